@@ -125,27 +125,6 @@ CampaignOptions campaign_options(const CampaignArguments& arguments) {
   return options;
 }
 
-/// What the episodes are drawn of.
-struct Drawn {
-  Problem problem;
-  PathProblem first;  ///< first_path() of it
-  std::vector<io::InputFiles::File> inputs;
-};
-
-/// Loads the problem file, and notes the files that were read: with hashes of their contents if
-/// there is a results file, which says what it was computed from. Throws InputError.
-Drawn load_drawn(const CampaignArguments& arguments) {
-  Drawn drawn;
-  const io::InputFiles noted(arguments.out.empty() ? io::InputFiles::Contents::kIgnore
-                                                   : io::InputFiles::Contents::kHash);
-  drawn.problem = io::load_problem(arguments.problem);
-  drawn.inputs = noted.files();
-  require_planner_of(drawn.problem, arguments.search);
-  drawn.problem = chosen_problem(drawn.problem, arguments.search, {});
-  drawn.first = first_path(drawn.problem);
-  return drawn;
-}
-
 /// Adds the files of the command line to `outputs`. Throws InputError if one cannot be written.
 void add_outputs(const CampaignArguments& arguments, io::OutputFiles& outputs) {
   outputs.add("--out", arguments.out);
@@ -192,7 +171,7 @@ std::vector<EpisodeRow> resume(io::CampaignFile& file, const std::vector<Episode
 /// Plans the episodes that `rows` lacks, and appends them to `rows` and to the results file. Shows
 /// on standard error how many are done.
 /// `robot`: the prepared one, unless the problem is of two arms.
-void plan_episodes(const std::optional<PreparedRobot>& robot, const Drawn& drawn,
+void plan_episodes(const std::optional<PreparedRobot>& robot, const ChosenProblem& drawn,
                    const CampaignOptions& options, std::vector<EpisodeRow>& rows,
                    std::optional<io::CampaignFile>& file) {
   ProgressLine progress(isatty(STDERR_FILENO) != 0);
@@ -236,7 +215,9 @@ int run(const CampaignArguments& arguments) {
   CampaignOptions options = campaign_options(arguments);
   if (!arguments.report.empty()) require_pages();
   require_table_name("--out", arguments.out, "the table of episodes", "--json for a summary");
-  const Drawn drawn = load_drawn(arguments);
+  const ChosenProblem drawn = load_chosen(
+      arguments.problem, arguments.search,
+      arguments.out.empty() ? io::InputFiles::Contents::kIgnore : io::InputFiles::Contents::kHash);
   const Problem& problem = drawn.problem;
   std::optional<PreparedRobot> robot;
   if (problem.arms.size() == 1) robot.emplace(drawn.first);

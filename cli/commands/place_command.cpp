@@ -116,28 +116,21 @@ std::string problem_text(const PlaceArguments& arguments) {
 }
 
 /// The problem whose thing is placed.
-struct PlacedProblem {
+struct PlacedProblem : ChosenProblem {
   std::string text;  ///< of the problem file; empty without --write
-  std::vector<io::InputFiles::File> inputs;
-  Problem problem;
-  PathProblem first;  ///< first_path() of it
   Movable thing;
 };
 
 /// Loads the problem file and notes which files were read: with hashes of their contents for a
-/// shard, whose results say what they were computed from. Throws InputError.
+/// shard. Throws InputError.
 PlacedProblem load_placed(const PlaceArguments& arguments) {
-  PlacedProblem placed;
-  if (!arguments.write.empty()) placed.text = problem_text(arguments);
-  {
-    const io::InputFiles noted(arguments.shard.empty() ? io::InputFiles::Contents::kIgnore
-                                                       : io::InputFiles::Contents::kHash);
-    placed.problem = io::load_problem(arguments.problem);
-    placed.inputs = noted.files();
-  }
-  require_planner_of(placed.problem, arguments.search);
-  placed.problem = chosen_problem(placed.problem, arguments.search, {});
-  placed.first = first_path(placed.problem);
+  std::string text;
+  if (!arguments.write.empty()) text = problem_text(arguments);
+  PlacedProblem placed{load_chosen(arguments.problem, arguments.search,
+                                   arguments.shard.empty() ? io::InputFiles::Contents::kIgnore
+                                                           : io::InputFiles::Contents::kHash),
+                       std::move(text),
+                       {}};
   placed.thing =
       arguments.request.placement.thing(placed.first, placed.problem.scene, placed.problem.source);
   return placed;

@@ -5,6 +5,7 @@
 
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/messages/input_error.hpp"
+#include "swivel/io/problems/problem.hpp"
 
 namespace swivel::cli {
 
@@ -27,6 +28,17 @@ Problem chosen_problem(const Problem& problem, const LatticeOptions& lattice,
   if (chosen.arms.size() == 2)
     unused = unused_by_both(unused, unused_keys_of(chosen.arms[1], chosen.source));
   lattice.require_used(unused);
+  return chosen;
+}
+
+ChosenProblem load_chosen(const std::string& file, const SearchOptions& search,
+                          io::InputFiles::Contents contents) {
+  const io::InputFiles noted(contents);
+  const Problem loaded = io::load_problem(file);
+  ChosenProblem chosen{.inputs = noted.files()};
+  require_planner_of(loaded, search);
+  chosen.problem = chosen_problem(loaded, search, {});
+  chosen.first = first_path(chosen.problem);
   return chosen;
 }
 

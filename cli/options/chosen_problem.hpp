@@ -7,6 +7,7 @@
 #include "options/commands.hpp"
 #include "options/search_options.hpp"
 #include "swivel/core/problem/problem.hpp"
+#include "swivel/io/files/files.hpp"
 
 namespace swivel::cli {
 
@@ -14,6 +15,18 @@ namespace swivel::cli {
 /// chooses. Throws InputError, also for options of a lattice that no arm uses.
 [[nodiscard]] Problem chosen_problem(const Problem& problem, const LatticeOptions& lattice,
                                      const EpisodeChoice& episode);
+
+/// The problem of a command that plans it many times.
+struct ChosenProblem {
+  Problem problem;
+  PathProblem first;                         ///< first_path() of it
+  std::vector<io::InputFiles::File> inputs;  ///< the files that were read
+};
+/// Loads a problem file, and chooses its lattice as the command line does. `contents`: whether the
+/// files that are read are noted with hashes, because results say what they were computed from.
+/// Throws InputError, also for a planner that does not plan such problems.
+[[nodiscard]] ChosenProblem load_chosen(const std::string& file, const SearchOptions& search,
+                                        io::InputFiles::Contents contents);
 
 /// Throws InputError for the first of these options, by name, that is given (true): only problems
 /// with one path take them. `file` names the problem in the message.
