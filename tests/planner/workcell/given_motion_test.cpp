@@ -378,7 +378,7 @@ TEST(GivenMotion, CarriesItsFollowerOnTheToolAsSixJointsHaveTurnedIt) {
   EXPECT_EQ(solved, count);
 }
 
-TEST(Problem, RefusesALeaderWhoseToolIsNotWhereItsPathSays) {
+TEST(Workcell, RefusesALeaderWhoseToolIsNotWhereItsPathSays) {
   Random random(seed("Workcell.RefusesALeaderWhoseToolIsNotWhereItsPathSays"));
   const TestRobot robot = data_robot("sda10f");
   for (int trial = 0; trial < 20; ++trial) {

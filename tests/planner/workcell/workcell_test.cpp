@@ -147,7 +147,7 @@ SceneObject random_post(Random& random) {
   return post;
 }
 
-TEST(Problem, CostsAsMuchAsAPlainProgramOverPairs) {
+TEST(Workcell, CostsAsMuchAsAPlainProgramOverPairs) {
   Random random(seed("Workcell.CostsAsMuchAsAPlainProgramOverPairs"));
   // The last two are not exactly S-R-S.
   const std::array<TestRobot, 4> robots{two_armed("sda10f"), two_armed("sda5f"),
@@ -187,7 +187,7 @@ TEST(Problem, CostsAsMuchAsAPlainProgramOverPairs) {
   EXPECT_GE(solved, at_least(count / 8));
 }
 
-TEST(Problem, IsTheAnswerOfEachArmWhereTheseDoNotMeet) {
+TEST(Workcell, IsTheAnswerOfEachArmWhereTheseDoNotMeet) {
   Random random(seed("Workcell.IsTheAnswerOfEachArmWhereTheseDoNotMeet"));
   const TestRobot robot = two_armed("sda10f");
   int alone = 0;
@@ -207,7 +207,7 @@ TEST(Problem, IsTheAnswerOfEachArmWhereTheseDoNotMeet) {
   EXPECT_GE(alone, at_least(count / 5));
 }
 
-TEST(Problem, IsTheSameOnTwoThreads) {
+TEST(Workcell, IsTheSameOnTwoThreads) {
   Random random(seed("Workcell.IsTheSameOnTwoThreads"));
   const TestRobot robot = two_armed("sda10f");
   const int count = trials(40);
@@ -227,7 +227,7 @@ TEST(Problem, IsTheSameOnTwoThreads) {
   }
 }
 
-TEST(Problem, BeginsAndEndsInGivenPostures) {
+TEST(Workcell, BeginsAndEndsInGivenPostures) {
   Random random(seed("Workcell.BeginsAndEndsInGivenPostures"));
   const TestRobot robot = two_armed("sda10f");
   int solved = 0;
@@ -249,7 +249,7 @@ TEST(Problem, BeginsAndEndsInGivenPostures) {
   EXPECT_GE(solved, at_least(count / 5));
 }
 
-TEST(Problem, FollowsALeader) {
+TEST(Workcell, FollowsALeader) {
   Random random(seed("Workcell.FollowsALeader"));
   const TestRobot robot = two_armed("sda10f");
   int solved = 0;
@@ -283,7 +283,7 @@ TEST(Problem, FollowsALeader) {
   EXPECT_GE(solved, at_least_among(1));
 }
 
-TEST(Problem, CarriesABarWithTwoHands) {
+TEST(Workcell, CarriesABarWithTwoHands) {
   Random random(seed("Workcell.CarriesABarWithTwoHands"));
   const TestRobot robot = two_armed("sda10f");
   int solved = 0;
@@ -331,7 +331,7 @@ TEST(Problem, CarriesABarWithTwoHands) {
   EXPECT_LE(on_moves, 2 * 0.001);
 }
 
-TEST(Problem, CheckRefusesSpoiltAnswers) {
+TEST(Workcell, CheckRefusesSpoiltAnswers) {
   Random random(seed("Workcell.CheckRefusesSpoiltAnswers"));
   const TestRobot robot = two_armed("sda10f");
   int spoilt = 0, met = 0;
@@ -418,7 +418,7 @@ void expect_meeting(const PreparedWorkcell& prepared, const WorkcellView& view,
   }
 }
 
-TEST(Problem, ShowsWhatItFoundOut) {
+TEST(Workcell, ShowsWhatItFoundOut) {
   Random random(seed("Workcell.ShowsWhatItFoundOut"));
   const TestRobot robot = two_armed("sda10f");
   int answers = 0, regions = 0, meetings = 0, without = 0;
@@ -463,7 +463,7 @@ TEST(Problem, ShowsWhatItFoundOut) {
   EXPECT_GE(without, at_least(count / 30));
 }
 
-TEST(Problem, RefusesWhatMakesNoSense) {
+TEST(Workcell, RefusesWhatMakesNoSense) {
   Random random(7);
   const Problem good = random_workcell(two_armed("sda10f"), random);
   const auto refuses = [&](const auto& spoil, const char* words) {
