@@ -68,12 +68,8 @@ std::optional<Problem> written(const Problem& of, unsigned turned) {
   return job;
 }
 
-/// Returns whether the job was found by straight transitions alone. Where a straight one was
-/// barred, which way around was compared with which turns of a joint depends on the jobs tried
-/// before.
 bool is_straight(const JobResult& job) {
-  return job.transitions.searches == 0 &&
-         std::all_of(job.parts.begin(), job.parts.end(),
+  return std::all_of(job.parts.begin(), job.parts.end(),
                      [](const JobPart& part) { return part.run || part.rows.size() == 2; });
 }
 
@@ -109,13 +105,14 @@ void expect_cheapest(const PreparedRobot& robot, const Problem& job, const std::
   const JobResult found = plan_job(robot, job);
   std::vector<std::vector<JobPart>> runs(job.arm().strokes.size());  // by stroke, of all directions
   double least = kNone;
-  bool straight = is_straight(found);
+  bool straight = is_straight(found), sought = found.transitions.searches > 0;
   for (unsigned turned = 0; turned < 1U << job.arm().strokes.size(); ++turned) {
     const std::optional<Problem> by_hand = written(job, turned);
     if (!by_hand) continue;
     JobResult other = plan_job(robot, *by_hand);
     if (other.parts.empty()) continue;
     straight = straight && is_straight(other);
+    sought = sought || other.transitions.searches > 0;
     least = std::min(least, other.cost);
     for (JobPart& part : other.parts) {
       if (!part.run) continue;
@@ -136,10 +133,11 @@ void expect_cheapest(const PreparedRobot& robot, const Problem& job, const std::
   const JobCheckResult own = check_job(robot, job, found.parts);
   ASSERT_TRUE(own.passed) << what << ": " << own.failures.front();
   for (const JobPart& part : found.parts) met.turned += part.run && part.run->reversed;
-  if (straight) {
-    ASSERT_NEAR(found.cost, least, 1e-9) << what;
+  if (straight) {  // else costs depend on the ways around that were found
+    // Where ways around were sought, those of a joint's nearest turn alone were.
+    ASSERT_NEAR(found.cost, least, sought ? 1e-3 * least : 1e-9) << what;
     ASSERT_LE(found.bound, found.lattice_cost) << what;
-    ++met.equal;
+    met.equal += sought ? 0 : 1;
   }
   for (int k = 0; k < 4; ++k) {
     std::vector<const JobPart*> taken;
