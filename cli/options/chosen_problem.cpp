@@ -59,13 +59,7 @@ void require_planner_of(const Problem& problem, const SearchOptions& search) {
 }
 
 PathProblem problem_of_arm(const Problem& problem, std::size_t arm) {
-  PathProblem alone;
-  static_cast<Robot&>(alone) = problem.arms[arm];
-  static_cast<Task&>(alone) = problem.arms[arm].path();
-  alone.scene = problem.scene;
-  alone.vary = problem.vary;
-  alone.source = problem.source;
-  return alone;
+  return problem_of_path(problem, problem.arms[arm], problem.arms[arm].path());
 }
 
 PathProblem first_path(const Problem& problem) {

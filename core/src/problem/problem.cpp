@@ -237,14 +237,19 @@ std::vector<int> steps_along_lines(const Stroke& stroke, const PathProblem& prob
 
 }  // namespace
 
-PathProblem problem_of_run(const Problem& problem, const StrokeRun& run) {
-  const Stroke& stroke = problem.arm().strokes[run.stroke];
+PathProblem problem_of_path(const Problem& problem, const ArmTask& arm, const Task& path) {
   PathProblem alone;
-  static_cast<Robot&>(alone) = problem.arm();
-  static_cast<Task&>(alone) = stroke;
+  static_cast<Robot&>(alone) = arm;
+  static_cast<Task&>(alone) = path;
   alone.scene = problem.scene;
   alone.vary = problem.vary;
   alone.source = problem.source;
+  return alone;
+}
+
+PathProblem problem_of_run(const Problem& problem, const StrokeRun& run) {
+  const Stroke& stroke = problem.arm().strokes[run.stroke];
+  PathProblem alone = problem_of_path(problem, problem.arm(), stroke);
   if (is_path(problem)) return alone;
   alone.waypoints = waypoints_of_run(stroke, run.reversed);
   alone.source = problem.source.empty() ? "stroke '" + stroke.name + "'"

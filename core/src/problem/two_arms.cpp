@@ -90,11 +90,8 @@ void validate_leader(const ArmTask& leader, const std::string& follower) {
 /// the other arm's waypoints for this.
 PathProblem alone(const Problem& cell, std::size_t number) {
   const ArmTask& arm = cell.arms[number];
-  PathProblem problem;
-  static_cast<Robot&>(problem) = arm;
-  static_cast<Task&>(problem) = arm.path();
+  PathProblem problem = problem_of_path(cell, arm, arm.path());
   problem.scene = scene_of(cell, number);
-  problem.vary = cell.vary;
   problem.source =
       cell.source.empty() ? "arm '" + arm.name + "'" : cell.source + ": arm '" + arm.name + "'";
   if (!arm.given.empty()) problem.waypoints = cell.arms[1 - number].path().waypoints;

@@ -119,11 +119,8 @@ void require_paths_move(const Problem& cell, const Offset& offset) {
 /// Returns the waypoints of an arm's path, moved about the origin of its frame. That of a follower
 /// is moved in the frame of its leader's tool, any other along the axes of the base frame.
 std::vector<Waypoint> moved_path(const Problem& cell, std::size_t k, const Offset& offset) {
-  PathProblem arm;
-  static_cast<Task&>(arm) = cell.arms[k].path();
-  arm.scene = cell.scene;
+  PathProblem arm = problem_of_path(cell, cell.arms[k], cell.arms[k].path());
   if (cell.leader_of(k) >= 0) arm.path_frame.clear();
-  arm.base_link = cell.arms[k].base_link;
   return placed_problem(arm, {Movable::Kind::kPath, ""}, offset).waypoints;
 }
 
@@ -238,19 +235,6 @@ PathProblem placed_problem(const PathProblem& problem, const Movable& thing, con
   return result;
 }
 
-namespace {
-
-/// Returns the problem that a path of an arm poses by itself.
-PathProblem path_of(const Problem& problem, const ArmTask& arm, const Task& path) {
-  PathProblem alone;
-  static_cast<Robot&>(alone) = arm;
-  static_cast<Task&>(alone) = path;
-  alone.scene = problem.scene;
-  return alone;
-}
-
-}  // namespace
-
 Problem placed_problem(const Problem& problem, const Movable& thing, const Offset& offset) {
   require_thing(thing, offset);
   Problem result = problem;
@@ -264,7 +248,8 @@ Problem placed_problem(const Problem& problem, const Movable& thing, const Offse
   for (std::size_t k = 0; k < problem.arms.size(); ++k) {
     if (problem.leader_of(k) >= 0) continue;
     for (Stroke& stroke : result.arms[k].strokes) {
-      PathProblem placed = placed_problem(path_of(problem, problem.arms[k], stroke), thing, offset);
+      PathProblem placed =
+          placed_problem(problem_of_path(problem, problem.arms[k], stroke), thing, offset);
       stroke.waypoints = std::move(placed.waypoints);
       result.scene = std::move(placed.scene);
     }

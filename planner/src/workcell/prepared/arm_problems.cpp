@@ -52,12 +52,9 @@ std::vector<SceneObject> scene_of(const Problem& cell, std::size_t arm, const Ar
 
 /// Returns the problem of an arm by itself, but for its path. `other` is the other arm.
 PathProblem problem_of(const Problem& cell, std::size_t arm, const ArmModel& other) {
-  PathProblem problem;
-  static_cast<Robot&>(problem) = cell.arms[arm];
-  static_cast<Task&>(problem) = cell.arms[arm].path();
+  PathProblem problem = problem_of_path(cell, cell.arms[arm], cell.arms[arm].path());
   problem.model = without_shapes_of(*cell.arms[arm].model, other);
   problem.scene = scene_of(cell, arm, other);
-  problem.vary = cell.vary;
   problem.source = cell.source.empty() ? "arm '" + cell.arms[arm].name + "'"
                                        : cell.source + ": arm '" + cell.arms[arm].name + "'";
   return problem;

@@ -32,8 +32,8 @@ enum class StrokeOrder { kGiven, kBest };
 /// transitions. One stroke without a name is a path: nothing comes before it or after it, and of
 /// the members below `given` none is set.
 ///
-/// Of two arms each has one path. Its `rolls` are unset then, and so are `steps` unless the motion
-/// of the other arm is given.
+/// Where a problem has two arms, each has one path. That path's `rolls` are unset, and its `steps`
+/// too, unless the motion of the other arm is given.
 struct ArmTask : Robot {
   std::string name;  ///< of one of two arms; else empty
   std::vector<Stroke> strokes;
@@ -129,6 +129,11 @@ struct LiftOff {
 [[nodiscard]] std::optional<std::size_t> find_stroke(const Problem& problem,
                                                      const std::string& name);
 
+/// Returns the problem that a path of an arm poses by itself: `path` is the task of one of its
+/// strokes, as it is.
+[[nodiscard]] PathProblem problem_of_path(const Problem& problem, const ArmTask& arm,
+                                          const Task& path);
+
 /// Returns the problem that one run of the arm's strokes poses by itself. Its path begins with the
 /// approach and ends with the retract; its `source` names the stroke, unless is_path().
 [[nodiscard]] PathProblem problem_of_run(const Problem& problem, const StrokeRun& run);
@@ -145,18 +150,19 @@ struct LiftOff {
 /// Throws InvalidArgument for a problem that makes no sense whatever the robot: arms that are not
 /// one or two; what validate(PathProblem) refuses of any run of a stroke.
 ///
-/// Of one arm: no strokes, names that are empty (but of a path) or taken, a start in a stroke, an
-/// end in a reversible one, a home that is not finite, speeds that are not positive, feeds that are
-/// not one per waypoint, lift-offs that cost less than nothing or overlap by less, in an order that
-/// is to be found, or with names that have a slash.
+/// Where there is one arm, it refuses: no strokes, names of strokes that are empty (unless the
+/// stroke is a path) or taken, a start in a stroke with a name, an end in a reversible one, a home
+/// that is not finite, speeds that are not positive, feeds that are not one per waypoint, lift-offs
+/// that cost less than nothing or overlap by less, in an order that is to be found, or with names
+/// that have a slash.
 ///
-/// Of two arms: names of arms that are empty, equal or those of a scene object or the base link;
-/// arms whose model, base_link or hold differ, which lead each other, which have more than one
-/// path, or whose paths have different numbers of waypoints; two given motions, or one of fewer
-/// than two rows, with joints that are not finite, or of an arm with a path, a start, an end or a
-/// bounded roll; `steps` that do not lead to its last row; windows of the roll at waypoints; a
-/// leader that is planned with a roll, or whose start may be off its path; attached bodies of one
-/// name.
+/// Where there are two arms, it refuses: names of arms that are empty, equal or those of a scene
+/// object or the base link; arms whose model, base_link or hold differ, which lead each other,
+/// which have more than one path, or whose paths have different numbers of waypoints; two given
+/// motions, or one of fewer than two rows, with joints that are not finite, or of an arm with a
+/// path, a start, an end or a bounded roll; `steps` that do not lead to its last row; windows of
+/// the roll at waypoints; a leader that is planned with a roll, or whose start may be off its path;
+/// attached bodies of one name.
 void validate(const Problem& problem);
 
 }  // namespace swivel
