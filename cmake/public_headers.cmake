@@ -18,7 +18,7 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/core/problem/tool_path.hpp
   swivel/core/problem/validate.hpp
   swivel/core/answer/advice.hpp
-  swivel/core/answer/job_result.hpp
+  swivel/core/answer/answer.hpp
   swivel/core/answer/answer_text.hpp
   swivel/core/answer/cause.hpp
   swivel/core/answer/infeasibility_certificate.hpp
@@ -26,7 +26,6 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/core/answer/refined.hpp
   swivel/core/answer/stated.hpp
   swivel/core/answer/workcell_certificate.hpp
-  swivel/core/answer/workcell_result.hpp
   swivel/core/kinematics/chain/arm.hpp
   swivel/core/lattice/body_pose_classes.hpp
   swivel/core/lattice/kinds/make_lattice.hpp

@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
   swivel::PlanOptions options;
   options.evidence.layers = true;  // which layers have no valid node, and why
   const swivel::PlanResult result = swivel::plan(problem, options);
-  const swivel::Diagnosis& diagnosis = result.diagnosis;
+  const swivel::Diagnosis& diagnosis = *result.diagnosis;
   std::cout << to_string(result.status) << ": " << words(diagnosis.cause) << '\n';
   if (diagnosis.reached_s)
     std::cout << "a valid path reaches s = " << *diagnosis.reached_s << " m\n";

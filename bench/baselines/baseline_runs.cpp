@@ -75,10 +75,10 @@ void run_swivel(const char* name, const PreparedRobot& robot, const PathProblem&
     std::vector<std::pair<double, Config>> all;
     for (const TrajectoryRow& row : planned.trajectory) all.emplace_back(row.s, row.q);
     if (!rows.empty()) write_rows(rows, robot, problem, all);
-  } else if (planned.diagnosis.reached_s) {
+  } else if (planned.diagnosis->reached_s) {
     std::printf(": no path goes past %.1f %% of the path: %s",
-                100 * *planned.diagnosis.reached_s / length,
-                words(planned.diagnosis.cause).c_str());
+                100 * *planned.diagnosis->reached_s / length,
+                words(planned.diagnosis->cause).c_str());
   }
   std::printf("\n");
 }

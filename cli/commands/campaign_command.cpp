@@ -46,11 +46,9 @@ class Trajectories {
   [[nodiscard]] static bool is_name(const std::string& name) {
     return name.starts_with("episode_") && name.ends_with(".csv");
   }
-  /// Writes the trajectory of an episode, which to_csv(result) returns as text, or removes that of
-  /// an older campaign if there is no path. Several threads may call it at a time. Throws
-  /// InputError if the folder cannot be written.
-  template <class Result, class ToCsv>
-  void write(std::uint64_t episode, const Result& result, const ToCsv& to_csv) {
+  /// Writes the trajectory of an episode, or removes that of an older campaign if there is none.
+  /// Several threads may call it at a time. Throws InputError if the folder cannot be written.
+  void write(std::uint64_t episode, const Answer& result, const Problem& problem) {
     std::error_code error;
     if (result.status != PlanStatus::kSolved) {
       removed_ += fs::remove(file(episode), error);
@@ -60,7 +58,7 @@ class Trajectories {
     if (error)
       throw InputError("--trajectories: " + folder_.string() + ": " + error.message() +
                        ": allowed is a folder that can be written");
-    io::write_file(file(episode), to_csv(result));
+    io::write_file(file(episode), io::to_csv(result, problem));
   }
   /// Returns how many files of an older campaign were removed.
   [[nodiscard]] std::uint64_t removed() const { return removed_; }
@@ -237,16 +235,8 @@ int run(const CampaignArguments& arguments) {
   std::optional<Trajectories> trajectories;
   if (!arguments.trajectories.empty()) {
     trajectories.emplace(arguments.trajectories);
-    options.planned = [&](std::uint64_t episode, const PlanResult& result) {
-      trajectories->write(episode, result, [](const PlanResult& one) { return io::to_csv(one); });
-    };
-    options.job_planned = [&](std::uint64_t episode, const JobResult& result) {
-      trajectories->write(episode, result,
-                          [&](const JobResult& one) { return io::to_job_csv(one, problem); });
-    };
-    options.workcell_planned = [&](std::uint64_t episode, const WorkcellResult& result) {
-      trajectories->write(episode, result,
-                          [](const WorkcellResult& one) { return io::to_workcell_csv(one); });
+    options.planned = [&](std::uint64_t episode, const Answer& answer) {
+      trajectories->write(episode, answer, problem);
     };
   }
   const io::ShardRecord record = record_of(arguments, options, drawn.first, held, drawn.inputs);

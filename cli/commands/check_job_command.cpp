@@ -107,13 +107,13 @@ int check_job_file(const Problem& given, const std::string& trajectory,
   if (const auto* read = std::get_if<io::JobTrajectory>(&file)) {
     if (speed)
       throw InputError(trajectory, "has no times: allowed with --speed are motions of jobs");
-    const std::vector<JobPart> parts = in_the_name_of(trajectory, [&] {
+    const std::vector<Part> parts = in_the_name_of(trajectory, [&] {
       return complete_parts(robot, job, parts_of(robot, job, *read), read->stated);
     });
     result = check_job(robot, job, parts);
     check_process(job, parts, process_of(*read), result);
     std::size_t runs = 0, rows = 0;
-    for (const JobPart& part : parts) {
+    for (const Part& part : parts) {
       runs += part.run.has_value();
       rows += part.rows.size();
     }

@@ -372,13 +372,14 @@ void write_problem(const InfoArguments& arguments, const ArmGuess& chosen, const
   options.timeout_s = kTime;
   const FirstPath found = find_first_path(robot, options);
   if (found.waypoints.empty())
-    throw InputError("--write", "none of " + std::to_string(found.tried) +
-                                    " straight paths tried can be followed" +
-                                    (found.tried == 0 ? ""
-                                     : found.plan.status == PlanStatus::kInfeasible
-                                         ? "; of the last one: " + words(found.plan.diagnosis.cause)
-                                         : " in time") +
-                                    ": allowed is an arm that can move");
+    throw InputError("--write",
+                     "none of " + std::to_string(found.tried) +
+                         " straight paths tried can be followed" +
+                         (found.tried == 0 ? ""
+                          : found.plan.status == PlanStatus::kInfeasible
+                              ? "; of the last one: " + words(found.plan.diagnosis->cause)
+                              : " in time") +
+                         ": allowed is an arm that can move");
   outputs.write("--write",
                 first_problem({arguments.urdf, arguments.srdf, packages, arguments.without}, robot,
                               arm, found.waypoints, arguments.write));

@@ -7,11 +7,11 @@
 
 namespace swivel::cli {
 
-std::vector<JobPart> parts_of(const PreparedRobot& robot, const Problem& job,
-                              const io::JobTrajectory& read) {
-  std::vector<JobPart> parts;
+std::vector<Part> parts_of(const PreparedRobot& robot, const Problem& job,
+                           const io::JobTrajectory& read) {
+  std::vector<Part> parts;
   for (const io::JobTrajectoryPart& part : read.parts) {
-    JobPart& made = parts.emplace_back();
+    Part& made = parts.emplace_back();
     made.rows = part.rows;
     if (part.stroke.empty()) continue;
     const auto stroke = find_stroke(job, part.stroke);

@@ -31,7 +31,7 @@ namespace swivel::cli {
 namespace {
 
 /// Returns how long each stage of a job's plan took, in words.
-std::string stages_text(const JobResult& result) {
+std::string stages_text(const Answer& result) {
   std::string text;
   for (const char* const stage :
        {"load", "lattice", "find", "order", "lift", "report", "check", "time", "check motion"})
@@ -42,10 +42,10 @@ std::string stages_text(const JobResult& result) {
 
 /// Prints the answer, times and work counts of a job; warnings go to standard error.
 void print_job(const JobMotionPlan& plan, const Problem& job) {
-  const JobResult& result = plan.result;
-  say_text(job_text(result, job));
-  if (plan.timing) say_text(job_motion_text(*plan.timing, result.parts, job));
-  const Counters& c = result.counters;
+  const Answer& result = plan.result;
+  say_text(answer_text(result, job));
+  if (plan.timing) say_text(job_motion_text(*plan.timing, result.arm().parts, job));
+  const Counters& c = result.arm().counters;
   say("%s, %d thread%s: %s; %lld nodes and %lld edges checked, %lld FCL calls\n",
       result.planner.c_str(), result.threads, result.threads == 1 ? "" : "s",
       stages_text(result).c_str(), static_cast<long long>(c.nodes_checked),
@@ -69,12 +69,12 @@ struct JobAnswer {
 /// it. Adds a warning to the result if none is known to have none, or if the budget ends first.
 void find_certificate(const Problem& job, const JobView& view, const Budget& budget,
                       JobAnswer& answer) {
-  JobResult& result = answer.plan.result;
-  const auto run = std::find_if(result.runs.begin(), result.runs.end(), [](const RunResult& one) {
-    return one.status == PlanStatus::kInfeasible;
-  });
-  if (run == result.runs.end()) {
-    result.warnings.push_back(result.runs.empty()  // where home is barred
+  Answer& result = answer.plan.result;
+  const auto run =
+      std::find_if(result.arm().runs.begin(), result.arm().runs.end(),
+                   [](const RunAnswer& one) { return one.status == PlanStatus::kInfeasible; });
+  if (run == result.arm().runs.end()) {
+    result.warnings.push_back(result.arm().runs.empty()  // where home is barred
                                   ? "no stroke was planned by itself: there is no certificate"
                                   : "each stroke has a path by itself: there is no certificate");
     return;
@@ -87,7 +87,7 @@ void find_certificate(const Problem& job, const JobView& view, const Budget& bud
     return;
   }
   try {
-    const auto index = static_cast<std::size_t>(run - result.runs.begin());
+    const auto index = static_cast<std::size_t>(run - result.arm().runs.begin());
     answer.proof = prove_infeasible(view.runs.at(index), budget);
     answer.proof->stroke = stroke.name;
     answer.proof->reversed = run->run.reversed;
@@ -128,14 +128,14 @@ std::optional<std::string> page_of(const JobRequest& request, const PreparedRobo
                                    const Problem& given, const JobView& view, const Budget& budget,
                                    JobAnswer& answer) {
   const JobMotionPlan& plan = answer.plan;
-  const JobResult& result = plan.result;
-  const Problem job = executed_job(given, result);
-  if (!request.report || (result.parts.empty() && result.status != PlanStatus::kInfeasible))
+  const Answer& result = plan.result;
+  const Problem job = executed_problem(given, result);
+  if (!request.report || (result.arm().parts.empty() && result.status != PlanStatus::kInfeasible))
     return std::nullopt;
   try {
-    std::string text = job_text(result, job);
+    std::string text = answer_text(result, job);
     if (answer.advice) text += advice_text(*answer.advice);
-    if (plan.timing) text += job_motion_text(*plan.timing, result.parts, job);
+    if (plan.timing) text += job_motion_text(*plan.timing, result.arm().parts, job);
     const JobMotion* motion = plan.timing && plan.timing->motion ? &*plan.timing->motion : nullptr;
     const io::VisualRobot visual = io::load_visuals(*job.arm().model);
     return to_job_page({robot, job, result, view, motion},
@@ -153,13 +153,13 @@ std::optional<std::string> page_of(const JobRequest& request, const PreparedRobo
 void write_rows(const JobRequest& request, const JobMotionPlan& plan, const Problem& job,
                 io::OutputFiles& outputs) {
   const bool motion = plan.timing && plan.timing->motion;
-  if (plan.result.parts.empty() || (request.timing && !motion))
+  if (plan.result.arm().parts.empty() || (request.timing && !motion))
     outputs.remove("--out");
   else if (!request.timing)
-    outputs.write("--out", io::to_job_csv(plan.result, job));
+    outputs.write("--out", io::to_csv(plan.result, job));
   else
     outputs.write_each("--out", [&](const std::filesystem::path& file) {
-      return io::job_motion_text(*plan.timing->motion, job, plan.result.joint_names,
+      return io::job_motion_text(*plan.timing->motion, job, plan.result.arm().joint_names,
                                  job.arm().base_link, file);
     });
 }
@@ -191,12 +191,12 @@ int plan_job_file(JobRequest request, io::OutputFiles& outputs) {
     find_advice(request, robot, job, budget, answer);
   }
   JobMotionPlan& plan = answer.plan;
-  JobResult& result = plan.result;
+  Answer& result = plan.result;
   result.time_ms["load"] = request.load_ms;
   std::optional<std::string> page = page_of(request, robot, job, view, budget, answer);
   progress.clear();
 
-  const Problem executed = executed_job(request.job, result);
+  const Problem executed = executed_problem(request.job, result);
   write_rows(request, plan, executed, outputs);
   const std::size_t certificate_bytes = answer.certificate.size();
   if (answer.proof)

@@ -22,10 +22,10 @@ namespace {
 
 /// Returns the parts of a job in a file, with rows at the layers of each run. `job` has its
 /// lift-offs, if it has any. Throws InputError unless they are proved to be the job's.
-std::vector<JobPart> proved_parts(const PreparedRobot& robot, const io::ExecutedJobRows& read,
-                                  const Budget& budget) {
+std::vector<Part> proved_parts(const PreparedRobot& robot, const io::ExecutedJobRows& read,
+                               const Budget& budget) {
   const Problem& job = read.job;
-  const auto require_check = [&](const Problem& of, const std::vector<JobPart>& parts) {
+  const auto require_check = [&](const Problem& of, const std::vector<Part>& parts) {
     const JobCheckResult check = check_job(robot, of, parts, {.margins = false, .budget = budget});
     if (!check.passed)
       throw InputError(check.failures.front() + ": allowed is a job that passes `swivel check`");
@@ -34,32 +34,32 @@ std::vector<JobPart> proved_parts(const PreparedRobot& robot, const io::Executed
     const auto order = runs_of_motion(robot, job, file->strokes, file->motion);
     const JobMotion motion =
         complete_job_motion(robot, job, order, file->motion, file->stated, budget);
-    std::vector<JobPart> parts = parts_of_motion(robot, job, order, motion, budget);
+    std::vector<Part> parts = parts_of_motion(robot, job, order, motion, budget);
     // The rows are on the paths as motions follow them.
     require_check(with_motion_defaults(job), parts);
     return parts;
   }
   const auto& file = std::get<io::JobTrajectory>(read.rows);
-  std::vector<JobPart> parts =
+  std::vector<Part> parts =
       complete_parts(robot, job, parts_of(robot, job, file), file.stated, budget);
   require_check(job, parts);
-  for (JobPart& part : parts)
+  for (Part& part : parts)
     if (part.run)
       part.rows = rows_at_layers(robot, problem_of_run(job, *part.run), part.rows, {}, budget);
   return parts;
 }
 
 /// Returns the runs among parts of a job.
-std::vector<StrokeRun> runs_among(const std::vector<JobPart>& parts) {
+std::vector<StrokeRun> runs_among(const std::vector<Part>& parts) {
   std::vector<StrokeRun> runs;
-  for (const JobPart& part : parts)
+  for (const Part& part : parts)
     if (part.run) runs.push_back(*part.run);
   return runs;
 }
 
 /// A motion, or why there is none.
 struct Timed {
-  std::vector<JobPart> parts;
+  std::vector<Part> parts;
   JobTimingResult timing;
   std::string fault = {};  ///< what the check of the motion found; empty: it is proved
 };

@@ -80,16 +80,14 @@ void print_rates(const CheckResult::Motion& motion, const io::JointNames& names)
 void write_rows(const WorkcellRequest& request, const WorkcellMotionPlan& plan,
                 io::OutputFiles& outputs) {
   const bool motion = plan.timing && plan.timing->motion;
-  if (plan.result.arms[0].trajectory.empty() || (request.timing && !motion)) {
+  if (!plan.result.has_rows() || (request.timing && !motion)) {
     outputs.remove("--out");
     return;
   }
   outputs.write_each("--out", [&](const std::filesystem::path& file) {
-    return motion ? io::workcell_motion_text(
-                        *plan.timing->motion,
-                        {plan.result.arms[0].joint_names, plan.result.arms[1].joint_names},
-                        request.cell.arms[0].base_link, file)
-                  : io::to_workcell_csv(plan.result);
+    return motion ? io::workcell_motion_text(*plan.timing->motion, joint_names_of_arms(plan.result),
+                                             request.cell.arms[0].base_link, file)
+                  : io::to_csv(plan.result, request.cell);
   });
 }
 
@@ -111,15 +109,14 @@ void find_advice(const WorkcellRequest& request, const Budget& budget, WorkcellA
 }
 
 /// Returns the answer of a workcell for people, with its advice, its refinement and its motion.
-std::string plan_text(const WorkcellAnswer& answer) {
+std::string plan_text(const WorkcellAnswer& answer, const Problem& problem) {
   const WorkcellMotionPlan& plan = answer.plan;
-  const WorkcellResult& result = plan.result;
-  std::string text = answer_text(result);
+  const Answer& result = plan.result;
+  std::string text = answer_text(result, problem);
   if (answer.advice) text += advice_text(*answer.advice);
-  if (plan.refinement) text += refined_workcell_text(*plan.refinement, result.names);
+  if (plan.refinement) text += refined_workcell_text(*plan.refinement, names_of_arms(result));
   if (plan.timing)
-    text += workcell_motion_text(
-        *plan.timing, {result.arms[0].joint_names, result.arms[1].joint_names}, result.names);
+    text += workcell_motion_text(*plan.timing, joint_names_of_arms(result), names_of_arms(result));
   return text;
 }
 
@@ -132,17 +129,17 @@ io::WorkcellExtras extras_of(const WorkcellRequest& request, const WorkcellAnswe
 }
 
 /// Prints the answer, times and work counts of a workcell; warnings go to standard error.
-void print_workcell(const WorkcellAnswer& answer) {
+void print_workcell(const WorkcellAnswer& answer, const Problem& problem) {
   const WorkcellMotionPlan& plan = answer.plan;
-  const WorkcellResult& result = plan.result;
-  say_text(plan_text(answer));
+  const Answer& result = plan.result;
+  say_text(plan_text(answer, problem));
   std::string stages;
   for (const char* const stage :
        {"load", "prepare", "lattice", "search", "refine", "time", "check", "report", "certificate"})
     if (const auto found = result.time_ms.find(stage); found != result.time_ms.end())
       stages += formatted("%s%s %.1f ms", stages.empty() ? "" : ", ", stage, found->second);
   long long nodes = 0, edges = 0, calls = 0;
-  for (const PlanResult& arm : result.arms) {
+  for (const ArmAnswer& arm : result.arms) {
     nodes += arm.counters.nodes_checked;
     edges += arm.counters.edges_checked;
     calls += arm.counters.fcl_calls;
@@ -150,15 +147,15 @@ void print_workcell(const WorkcellAnswer& answer) {
   say("%s, %d thread%s: %s; %lld nodes and %lld edges of the arms checked, %lld pairs of nodes and "
       "%lld of motions, %lld FCL calls\n",
       result.planner.c_str(), result.threads, result.threads == 1 ? "" : "s", stages.c_str(), nodes,
-      edges, static_cast<long long>(result.counters.node_pairs),
-      static_cast<long long>(result.counters.move_pairs), calls);
+      edges, static_cast<long long>(result.pair.counters.node_pairs),
+      static_cast<long long>(result.pair.counters.move_pairs), calls);
   std::set<std::string> said;
   const auto warn = [&](const std::vector<std::string>& warnings) {
     for (const std::string& warning : warnings)
       if (said.insert(warning).second) complain("swivel: warning: %s\n", warning.c_str());
   };
   warn(result.warnings);
-  for (const PlanResult& arm : result.arms) warn(arm.warnings);
+  for (const ArmAnswer& arm : result.arms) warn(arm.warnings);
   if (plan.timing && plan.timing->motion) warn_of_motion(*plan.timing->motion);
 }
 
@@ -176,7 +173,7 @@ std::optional<std::string> page_of(const WorkcellRequest& request, const Prepare
     return to_workcell_page(
         {prepared, request.cell, plan.result, view, motion},
         io::to_workcell_json(plan.result, extras_of(request, answer)), budget,
-        {request.which, plan_text(answer), visual.model.get(), visual.left_out});
+        {request.which, plan_text(answer, request.cell), visual.model.get(), visual.left_out});
   } catch (const Stopped&) {
     plan.result.warnings.push_back("stopped before the page was made: there is no report");
     return std::nullopt;
@@ -185,8 +182,7 @@ std::optional<std::string> page_of(const WorkcellRequest& request, const Prepare
 
 /// Proves that a workcell has no plan, for --certificate. Adds a warning to the result if the
 /// budget is spent before.
-std::string proof_of(const PreparedWorkcell& prepared, const Budget& budget,
-                     WorkcellResult& result) {
+std::string proof_of(const PreparedWorkcell& prepared, const Budget& budget, Answer& result) {
   const auto start = std::chrono::steady_clock::now();
   std::string text;
   try {
@@ -211,7 +207,7 @@ int plan_workcell_file(WorkcellRequest request, io::OutputFiles& outputs) {
   WorkcellAnswer answer{plan_workcell_motion(prepared, request.options, request.refine,
                                              request.timing, request.report ? &view : nullptr)};
   WorkcellMotionPlan& plan = answer.plan;
-  const WorkcellResult& result = plan.result;
+  const Answer& result = plan.result;
   plan.result.time_ms["load"] = request.load_ms;
   find_advice(request, budget, answer);
   std::optional<std::string> page = page_of(request, prepared, view, budget, answer);
@@ -240,7 +236,7 @@ int plan_workcell_file(WorkcellRequest request, io::OutputFiles& outputs) {
                       : "the search was stopped",
           [&] {
             if (request.quiet || outputs.takes_standard_output()) return;
-            print_workcell(answer);
+            print_workcell(answer, request.cell);
             if (bytes > 0) say("certificate: %zu bytes\n", bytes);
           });
   if (infeasible || no_motion) return kNo;

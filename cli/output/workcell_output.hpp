@@ -3,8 +3,8 @@
 #include <array>
 #include <string>
 
+#include "swivel/core/answer/answer.hpp"
 #include "swivel/core/answer/refined.hpp"
-#include "swivel/core/answer/workcell_result.hpp"
 #include "swivel/core/motion/workcell_motion.hpp"
 #include "swivel/io/motions/motion.hpp"
 

@@ -74,16 +74,27 @@ void serialize(A& archive, PathProblem& x) {
   archive(static_cast<Robot&>(x), static_cast<Task&>(x), x.source, x.scene, x.vary);
 }
 
-/// Lists the members of a PlanResult and of its base, which no structured binding takes apart
+/// Lists the members of a RunAnswer and of its base, which no structured binding takes apart
 /// together.
 template <class A>
-void serialize(A& archive, PlanResult& x) {
+void serialize(A& archive, RunAnswer& x) {
   struct Listed : Measures {
+    StrokeRun run;
     PlanStatus status;
+    double least_cost;
+    LatticeInfo lattice;
+    std::optional<Diagnosis> diagnosis;
+  };
+  static_assert(sizeof(Listed) == sizeof(RunAnswer));
+  archive(static_cast<Measures&>(x), x.run, x.status, x.least_cost, x.lattice, x.diagnosis);
+}
+/// Lists the members of a PlanResult and of its base.
+template <class A>
+void serialize(A& archive, PlanResult& x) {
+  struct Listed : RunAnswer {
     double cost;
     std::string planner;
     int threads;
-    LatticeInfo lattice;
     Counters counters;
     std::map<std::string, double> time_ms;
     std::vector<TrajectoryRow> trajectory;
@@ -91,14 +102,13 @@ void serialize(A& archive, PlanResult& x) {
     std::vector<TrajectoryRow> partial;
     std::array<std::string, kDof> joint_names;
     std::vector<HeldJoint> held;
-    Diagnosis diagnosis;
     std::vector<SpecialPair> dropped_pairs, reduced_pairs;
     std::vector<std::string> warnings;
   };
   static_assert(sizeof(Listed) == sizeof(PlanResult));
-  archive(static_cast<Measures&>(x), x.status, x.cost, x.planner, x.threads, x.lattice, x.counters,
-          x.time_ms, x.trajectory, x.checked, x.partial, x.joint_names, x.held, x.diagnosis,
-          x.dropped_pairs, x.reduced_pairs, x.warnings);
+  archive(static_cast<RunAnswer&>(x), x.cost, x.planner, x.threads, x.counters, x.time_ms,
+          x.trajectory, x.checked, x.partial, x.joint_names, x.held, x.dropped_pairs,
+          x.reduced_pairs, x.warnings);
 }
 template <class A>
 void serialize(A& archive, MotionResult& x) {

@@ -40,15 +40,15 @@ void serialize(A& archive, ArmTask& x) {
   archive(static_cast<Robot&>(x), x.name, x.strokes, x.given, x.transition_limits, x.home, x.order,
           x.process_speed, x.approach_speed, x.rapid, x.lift);
 }
-/// Lists the members of a LiftOffResult and of its base, which no structured binding takes apart
+/// Lists the members of a LiftOffAnswer and of its base, which no structured binding takes apart
 /// together.
 template <class A>
-void serialize(A& archive, LiftOffResult& x) {
+void serialize(A& archive, LiftOffAnswer& x) {
   struct Listed : LiftOff {
     double reached;
     Cause cause;
   };
-  static_assert(sizeof(Listed) == sizeof(LiftOffResult));
+  static_assert(sizeof(Listed) == sizeof(LiftOffAnswer));
   archive(x.stroke, x.end, x.resumed, x.reached, x.cause);
 }
 

@@ -116,10 +116,10 @@ swivel::Problem executed_by(const swivel::Problem& job, const JobMotion& motion)
 }
 
 /// Returns parts for the planner. Throws InvalidArgument for a stroke that the job does not have.
-std::vector<swivel::JobPart> to_core(const swivel::Problem& job, const Parts& parts) {
-  std::vector<swivel::JobPart> all;
+std::vector<swivel::Part> to_core(const swivel::Problem& job, const Parts& parts) {
+  std::vector<swivel::Part> all;
   for (const JobPart& part : parts) {
-    swivel::JobPart& made = all.emplace_back();
+    swivel::Part& made = all.emplace_back();
     if (part.stroke) made.run = StrokeRun{stroke_of(job, *part.stroke), part.reversed};
     made.cost = part.cost.value_or(0);
     made.rows = *part.rows;
@@ -132,9 +132,9 @@ std::vector<swivel::JobPart> to_core(const swivel::Problem& job, const Parts& pa
 /// Throws InputError, also for a stroke that the job does not have.
 Parts from_file(const PreparedRobot& robot, const swivel::Problem& job, io::JobTrajectory read,
                 const Budget& budget) {
-  std::vector<swivel::JobPart> rows;
+  std::vector<swivel::Part> rows;
   for (io::JobTrajectoryPart& one : read.parts) {
-    swivel::JobPart& made = rows.emplace_back();
+    swivel::Part& made = rows.emplace_back();
     made.rows = std::move(one.rows);
     if (one.stroke.empty()) continue;
     const auto stroke = find_stroke(job, one.stroke);
@@ -191,7 +191,7 @@ std::variant<Parts, JobMotion> load_rows(const PreparedRobot& robot, const swive
 /// `job`: with the lift-offs of the parts.
 JobCheckResult check_parts(const PreparedRobot& robot, const swivel::Problem& job,
                            const Parts& parts, const CheckOptions& options) {
-  const std::vector<swivel::JobPart> all = to_core(job, parts);
+  const std::vector<swivel::Part> all = to_core(job, parts);
   JobCheckResult result = swivel::check_job(robot, job, all, options);
   std::vector<std::vector<bool>> process;
   for (const JobPart& part : parts) process.push_back(part.process);
@@ -227,7 +227,7 @@ JobCheck check(const JobOrFile& of, const Checked& rows, std::optional<double> s
     if (const auto* file = std::get_if<std::filesystem::path>(&rows))
       given = load_rows(robot, job, *file, options.budget);
     else if (const auto* plan = std::get_if<JobPlan>(&rows))
-      given = parts_of(*plan, plan->result().parts);
+      given = parts_of(*plan, plan->result().arm().parts);
     else if (const auto* motion = std::get_if<JobMotion>(&rows))
       given = *motion;
     else
@@ -250,7 +250,7 @@ JobPlan plan(const JobOrFile& of, PlanOptions options,
     if (!timing) return JobMotionPlan{swivel::plan_job(job, options), {}};
     return plan_job_motion(prepared(job, stop), job, options, *timing);
   }));
-  plan.job = without_surroundings(executed_job(job, plan.plan->result));
+  plan.job = without_surroundings(executed_problem(job, plan.plan->result));
   plan.timing = timing;
   plan.given = std::make_shared<const swivel::Problem>(job);
   return plan;
@@ -261,7 +261,7 @@ using Timeable = std::variant<JobPlan, Parts, std::filesystem::path>;
 /// Parts that are proved, and the job of which they are, with its lift-offs.
 struct ProvedParts {
   swivel::Problem job;
-  std::vector<swivel::JobPart> parts;
+  std::vector<swivel::Part> parts;
 };
 
 /// Returns the parts of a file, or made by hand, with rows at the layers of each run. Throws
@@ -295,7 +295,7 @@ ProvedParts proved_parts(const PreparedRobot& robot, const swivel::Problem& of,
   const swivel::Problem& job = proved.job;
   require(check_parts(robot, job, given, options));
   proved.parts = to_core(job, given);
-  for (swivel::JobPart& part : proved.parts)
+  for (swivel::Part& part : proved.parts)
     if (part.run)
       part.rows = rows_at_layers(robot, problem_of_run(job, *part.run), part.rows, {}, budget);
   return proved;
@@ -311,8 +311,8 @@ JobMotion time(const JobOrFile& of, const Timeable& rows, const JobTimingOptions
     const PreparedRobot robot = prepared(given, stop);
     ProvedParts proved;
     if (const auto* const plan = std::get_if<JobPlan>(&rows)) {
-      proved.job = executed_job(given, plan->result());
-      proved.parts = to_core(proved.job, parts_of(*plan, plan->result().parts));
+      proved.job = executed_problem(given, plan->result());
+      proved.parts = to_core(proved.job, parts_of(*plan, plan->result().arm().parts));
     } else {
       proved = proved_parts(robot, given, rows, budget);
     }
@@ -320,7 +320,7 @@ JobMotion time(const JobOrFile& of, const Timeable& rows, const JobTimingOptions
     JobMotion motion;
     motion.job = without_surroundings(job);
     motion.joint_names = robot.arm().chain.joint_names;
-    for (const swivel::JobPart& part : parts)
+    for (const swivel::Part& part : parts)
       if (part.run) motion.order.push_back(*part.run);
     auto result =
         std::make_shared<JobTimingResult>(swivel::time_job(robot, job, parts, timing, budget));

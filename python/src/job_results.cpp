@@ -31,30 +31,31 @@ std::string run_words(const std::string& stroke, bool reversed) {
   return "stroke '" + stroke + "'" + (reversed ? " backwards" : "");
 }
 
-std::optional<double> gap_of(const JobResult& result) {
-  if (result.parts.empty() || (result.bound <= 0 && result.lattice_cost > 0)) return {};
+std::optional<double> gap_of(const Answer& result) {
+  if (result.arm().parts.empty() || (result.bound <= 0 && result.lattice_cost > 0)) return {};
   return result.lattice_cost > 0 ? result.lattice_cost / result.bound - 1 : 0.0;
 }
 
 /// Returns the runs between which no transition was found: their names, None for home.
 py::object no_transition_of(const JobPlan& plan) {
-  const JobResult& result = plan.result();
-  if (!result.no_transition) return py::none();
-  const std::size_t to = result.no_transition->to;
+  const Answer& result = plan.result();
+  if (!result.arm().no_transition) return py::none();
+  const std::size_t to = result.arm().no_transition->to;
   const auto name = [&](std::size_t k) {
-    return or_none(k < result.runs.size(),
-                   k < result.runs.size() ? name_of(*plan.job, result.runs[k].run) : "");
+    return or_none(k < result.arm().runs.size(), k < result.arm().runs.size()
+                                                     ? name_of(*plan.job, result.arm().runs[k].run)
+                                                     : "");
   };
   return py::make_tuple(to == 0 ? py::none() : name(to - 1), name(to));
 }
 
 std::vector<JobRun> runs_of(const JobPlan& plan) {
   std::vector<JobRun> runs;
-  for (const RunResult& one : plan.result().runs) {
+  for (const RunAnswer& one : plan.result().arm().runs) {
     JobRun& run = runs.emplace_back();
-    run.result = std::shared_ptr<const RunResult>(plan.plan, &one);
+    run.result = std::shared_ptr<const RunAnswer>(plan.plan, &one);
     run.stroke = name_of(*plan.job, one.run);
-    for (const swivel::JobPart& part : plan.result().parts)
+    for (const swivel::Part& part : plan.result().arm().parts)
       if (part.run == one.run) run.cost = part.cost;
   }
   return runs;
@@ -71,7 +72,7 @@ std::vector<LiftOffPlace> lift_offs_of(const JobPlan& plan) {
     approaches.push_back(stroke.approach.norm());
   }
   std::vector<LiftOffPlace> places;
-  for (LiftOffResult lift : plan.result().lift_offs) {
+  for (LiftOffAnswer lift : plan.result().arm().lift_offs) {
     for (double* const s : {&lift.end, &lift.resumed, &lift.reached})
       *s += approaches.at(lift.stroke);
     places.push_back({names.at(lift.stroke), std::move(lift)});
@@ -111,26 +112,27 @@ std::string motion_words(const JobMotion& motion) {
 }
 
 std::string infeasible_words(const JobPlan& plan) {
-  const JobResult& result = plan.result();
-  for (const RunResult& one : result.runs)
+  const Answer& result = plan.result();
+  for (const RunAnswer& one : result.arm().runs)
     if (one.status == PlanStatus::kInfeasible)
       return run_words(name_of(*plan.job, one.run), one.run.reversed) + " has no path by itself" +
              (one.diagnosis ? ": " + py::str(py::cast(one.diagnosis->cause)).cast<std::string>()
                             : "");
-  if (!result.no_transition) return "none found";
+  if (!result.arm().no_transition) return "none found";
   std::vector<std::string> runs;
-  for (const RunResult& one : result.runs)
+  for (const RunAnswer& one : result.arm().runs)
     runs.push_back(run_words(name_of(*plan.job, one.run), one.run.reversed));
-  return words(*result.no_transition, runs);
+  return words(*result.arm().no_transition, runs);
 }
 
 std::string plan_words(const JobPlan& plan) {
-  const JobResult& result = plan.result();
+  const Answer& result = plan.result();
   std::string text = to_string(result.status);
   if (result.status == PlanStatus::kInfeasible) return text + ": " + infeasible_words(plan);
-  if (result.parts.empty()) return text;
-  text += formatted(": %zu strokes", plan.job->arm().strokes.size() - result.lift_offs.size()) +
-          lift_words(result.lift_offs.size()) + formatted(", cost %.6g", result.cost);
+  if (result.arm().parts.empty()) return text;
+  text +=
+      formatted(": %zu strokes", plan.job->arm().strokes.size() - result.arm().lift_offs.size()) +
+      lift_words(result.arm().lift_offs.size()) + formatted(", cost %.6g", result.cost);
   if (const auto gap = gap_of(result)) text += formatted(", %.3g %% above its bound", 100 * *gap);
   if (plan.plan->timing) text += "; " + motion_words(motion_of(plan));
   if (plan.plan->stopped) text += "; stopped before its motion";
@@ -138,9 +140,9 @@ std::string plan_words(const JobPlan& plan) {
 }
 
 std::string csv_of(const JobPlan& plan) {
-  if (plan.result().parts.empty())
+  if (plan.result().arm().parts.empty())
     throw py::value_error(std::string("the plan has no job: ") + to_string(plan.result().status));
-  return io::to_job_csv(plan.result(), *plan.job);
+  return io::to_csv(plan.result(), *plan.job);
 }
 
 std::string motion_text(const JobMotion& motion, const std::filesystem::path& file) {
@@ -238,7 +240,7 @@ void bind_run(py::module_& m) {
       .def_property_readonly(
           "lattice", [](const JobRun& x) -> const LatticeInfo& { return x.result->lattice; })
       .def_property_readonly(
-          "measures", [](const JobRun& x) -> const Measures& { return x.result->measures; },
+          "measures", [](const JobRun& x) -> const Measures& { return *x.result; },
           "What its rows in the job come near to; all of it with evidence=True.")
       .def_property_readonly(
           "diagnosis",
@@ -292,27 +294,33 @@ void bind_plan(py::module_& m) {
           "solved", [](const JobPlan& p) { return p.result().status == PlanStatus::kSolved; })
       .def_property_readonly(
           "cost",
-          [](const JobPlan& p) { return or_none(!p.result().parts.empty(), p.result().cost); },
+          [](const JobPlan& p) {
+            return or_none(!p.result().arm().parts.empty(), p.result().cost);
+          },
           "Of strokes, transitions and lift-offs; None where there are no parts.")
       .def_property_readonly(
           "bound",
-          [](const JobPlan& p) { return or_none(!p.result().parts.empty(), p.result().bound); },
+          [](const JobPlan& p) {
+            return or_none(!p.result().arm().parts.empty(), p.result().bound);
+          },
           "No job of the lattices' nodes in this order costs less, if its transitions are those "
           "that are found.")
       .def_property_readonly(
           "bound_any",
-          [](const JobPlan& p) { return or_none(!p.result().parts.empty(), p.result().bound_any); },
+          [](const JobPlan& p) {
+            return or_none(!p.result().arm().parts.empty(), p.result().bound_any);
+          },
           "No job of the lattices' nodes in this order costs less, whatever its transitions.")
       .def_property_readonly(
           "gap", [](const JobPlan& p) { return gap_of(p.result()); },
           "What the search minimised over bound, less 1: 0 where the job is optimal. None where "
           "there is no bound.")
       .def_property_readonly(
-          "parts", [](const JobPlan& p) { return parts_of(p, p.result().parts); },
+          "parts", [](const JobPlan& p) { return parts_of(p, p.result().arm().parts); },
           "Transitions and runs, JobParts, in the order in which they are executed; none unless "
           "solved.")
       .def_property_readonly(
-          "partial", [](const JobPlan& p) { return parts_of(p, p.result().partial); },
+          "partial", [](const JobPlan& p) { return parts_of(p, p.result().arm().partial); },
           "Where time was up before a job was proved: the parts of the cheapest one known, "
           "unproved.")
       .def_property_readonly("runs", &runs_of, "JobRuns, in the order in which they are executed.")
@@ -326,14 +334,14 @@ void bind_plan(py::module_& m) {
       .def_property_readonly(
           "barred_by",
           [](const JobPlan& p) {
-            const auto& none = p.result().no_transition;
+            const auto& none = p.result().arm().no_transition;
             return bodies_or_none(none ? none->bodies : std::nullopt);
           },
           "The two bodies in the way there, or None.")
       .def_property_readonly(
           "barred_where",
           [](const JobPlan& p) -> std::optional<std::string> {
-            const auto& none = p.result().no_transition;
+            const auto& none = p.result().arm().no_transition;
             if (!none) return {};
             return to_string(none->where);
           },
@@ -351,22 +359,23 @@ void bind_plan(py::module_& m) {
           "There is a job, but time ran out before its motion.")
       .def_property_readonly("planner", [](const JobPlan& p) { return p.result().planner; })
       .def_property_readonly("threads", [](const JobPlan& p) { return p.result().threads; })
-      .def_property_readonly("joint_names", [](const JobPlan& p) { return p.result().joint_names; })
+      .def_property_readonly("joint_names",
+                             [](const JobPlan& p) { return p.result().arm().joint_names; })
       .def_property_readonly(
           "held",
           [](const JobPlan& p) {
             std::map<std::string, double> held;
-            for (const HeldJoint& joint : p.result().held) held[joint.name] = joint.position;
+            for (const HeldJoint& joint : p.result().arm().held) held[joint.name] = joint.position;
             return held;
           },
           "Joints between base and tip that are not planned -> where they stand, rad or m.")
       .def_property_readonly(
-          "counters", [](const JobPlan& p) { return counters_of(p.result().counters); },
+          "counters", [](const JobPlan& p) { return counters_of(p.result().arm().counters); },
           "Work done, by name.")
       .def_property_readonly(
           "transition_counters",
           [](const JobPlan& p) {
-            const TransitionCounters& t = p.result().transitions;
+            const TransitionCounters& t = p.result().arm().transitions;
             py::dict all;
             all["pairs"] = t.pairs, all["searches"] = t.searches, all["rounds"] = t.rounds;
             return all;
@@ -376,10 +385,10 @@ void bind_plan(py::module_& m) {
       .def_property_readonly(
           "time_ms", [](const JobPlan& p) { return p.result().time_ms; }, "By stage.")
       .def_property_readonly(
-          "dropped_pairs", [](const JobPlan& p) { return p.result().dropped_pairs; },
+          "dropped_pairs", [](const JobPlan& p) { return p.result().arm().dropped_pairs; },
           "Touch in every posture: not kept apart.")
       .def_property_readonly(
-          "reduced_pairs", [](const JobPlan& p) { return p.result().reduced_pairs; },
+          "reduced_pairs", [](const JobPlan& p) { return p.result().arm().reduced_pairs; },
           "Near by design: keep less.")
       .def_property_readonly("warnings", [](const JobPlan& p) { return p.result().warnings; })
       .def("to_csv", &csv_of, "The trajectory of the job as CSV, docs/formats.md.")
@@ -613,12 +622,12 @@ std::shared_ptr<const swivel::Problem> without_surroundings(const swivel::Proble
   return rest;
 }
 
-std::vector<JobPart> parts_of(const JobPlan& plan, const std::vector<swivel::JobPart>& of) {
+std::vector<JobPart> parts_of(const JobPlan& plan, const std::vector<swivel::Part>& of) {
   std::vector<JobPart> parts;
-  for (const swivel::JobPart& one : of) {
+  for (const swivel::Part& one : of) {
     JobPart& part = parts.emplace_back();
     part.rows = std::shared_ptr<const Rows>(plan.plan, &one.rows);
-    part.joint_names = plan.result().joint_names;
+    part.joint_names = plan.result().arm().joint_names;
     if (one.run) {
       part.stroke = name_of(*plan.job, *one.run), part.reversed = one.run->reversed;
       part.begin = s_of_piece(plan.job->arm().strokes[one.run->stroke]);
@@ -634,8 +643,8 @@ JobMotion motion_of(const JobPlan& plan) {
   JobMotion motion;
   motion.timing = std::shared_ptr<const JobTimingResult>(plan.plan, &*plan.plan->timing);
   motion.job = plan.job;
-  for (const RunResult& run : plan.result().runs) motion.order.push_back(run.run);
-  motion.joint_names = plan.result().joint_names;
+  for (const RunAnswer& run : plan.result().arm().runs) motion.order.push_back(run.run);
+  motion.joint_names = plan.result().arm().joint_names;
   return motion;
 }
 

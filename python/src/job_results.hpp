@@ -9,7 +9,7 @@
 
 #include "job.hpp"
 #include "results.hpp"
-#include "swivel/core/answer/job_result.hpp"
+#include "swivel/core/answer/answer.hpp"
 #include "swivel/core/motion/job_motion.hpp"
 #include "swivel/planner/job/check_job.hpp"
 #include "swivel/planner/job/time_job.hpp"
@@ -32,12 +32,12 @@ struct JobPart {
 /// A place at which the tool lifts off within a stroke.
 struct LiftOffPlace {
   std::string stroke;
-  LiftOffResult result;
+  LiftOffAnswer result;
 };
 
 /// What a plan found out about a run.
 struct JobRun {
-  std::shared_ptr<const RunResult> result;
+  std::shared_ptr<const RunAnswer> result;
   std::string stroke;
   std::optional<double> cost;  ///< in the job; none if there is no job
 };
@@ -50,7 +50,7 @@ struct JobPlan {
   std::optional<JobTimingOptions> timing = {};  ///< set where a motion was asked for
   /// The job as it was given, of which reports are made. Null after unpickling.
   std::shared_ptr<const swivel::Problem> given = nullptr;
-  [[nodiscard]] const JobResult& result() const { return plan->result; }
+  [[nodiscard]] const Answer& result() const { return plan->result; }
 };
 
 struct JobMotion {
@@ -73,7 +73,7 @@ struct JobCheck {
 [[nodiscard]] std::shared_ptr<const swivel::Problem> without_surroundings(
     const swivel::Problem& job);
 [[nodiscard]] std::vector<JobPart> parts_of(const JobPlan& plan,
-                                            const std::vector<swivel::JobPart>& of);
+                                            const std::vector<swivel::Part>& of);
 /// Returns the motion of a plan. Throws ValueError if it has none.
 [[nodiscard]] JobMotion motion_of(const JobPlan& plan);
 

@@ -720,9 +720,7 @@ void bind_plan(py::module_& m) {
           "What the trajectory comes near to; all of it with evidence=True.")
       .def_property_readonly(
           "diagnosis",
-          [](const Plan& p) {
-            return p.result().status == PlanStatus::kInfeasible ? &p.result().diagnosis : nullptr;
-          },
+          [](const Plan& p) { return p.result().diagnosis ? &*p.result().diagnosis : nullptr; },
           py::return_value_policy::reference_internal,
           "Why there is no path; None unless infeasible.")
       .def_property_readonly(

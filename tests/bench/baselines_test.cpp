@@ -139,7 +139,7 @@ TEST(Baselines, PlannerSolvesExperimentBFromTheSameStart) {
   const PreparedRobot robot(problem);
   ASSERT_TRUE(problem.start);
   const PlanResult result = plan(robot, problem, lazy());
-  ASSERT_EQ(result.status, PlanStatus::kSolved) << words(result.diagnosis.cause);
+  ASSERT_EQ(result.status, PlanStatus::kSolved) << words(result.diagnosis->cause);
   EXPECT_EQ(result.trajectory.front().q, *problem.start);
   EXPECT_GE(result.min_clearance.value(), problem.limits.clearance);
   EXPECT_LE(result.tool_path_error_mm.max, 1.0);

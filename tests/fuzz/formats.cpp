@@ -355,10 +355,10 @@ Reader job_reader(const TempFolder& folder) {
   job.arm().lift.emplace();
   JobMotion motion;
   PlanResult rows = short_plan(joints);
-  JobResult result;
-  result.joint_names = joints;
+  Answer result;
+  result.arm().joint_names = joints;
   for (std::size_t part = 0; part < 3; ++part) {
-    JobPart& made = result.parts.emplace_back();
+    Part& made = result.arm().parts.emplace_back();
     made.rows = rows.trajectory;
     if (part % 2 == 0) {
       Stroke& stroke = job.arm().strokes.emplace_back();
@@ -378,7 +378,7 @@ Reader job_reader(const TempFolder& folder) {
   }
   return {
       "job_rows",
-      {io::to_job_csv(result, job), io::to_job_motion_csv(motion, job, joints),
+      {io::to_csv(result, job), io::to_job_motion_csv(motion, job, joints),
        io::job_motion_text(motion, job, joints, "base", "m.json"),
        io::job_motion_text(motion, job, joints, "base", "m.yaml"),
        io::job_motion_text(motion, job, joints, "base", "m.mcap")},
@@ -393,20 +393,21 @@ Reader workcell_reader(const TempFolder& folder) {
   const std::array<std::string, 2> names{"left", "right"};
   const std::array<io::JointNames, 2> joints{io::JointNames{"a", "b", "c", "d", "e", "f", "g"},
                                              io::JointNames{"h", "i", "j", "k", "l", "m", "n"}};
-  WorkcellResult result;
-  result.names = names;
+  Answer result;
+  result.arms.clear();
   WorkcellMotion motion;
   motion.names = names;
   for (std::size_t k = 0; k < 2; ++k) {
-    result.arms[k] = short_plan(joints[k]);
-    for (const TrajectoryRow& row : result.arms[k].trajectory) {
+    result.arms.push_back(answer_of(short_plan(joints[k])).arm());
+    result.arms[k].name = names[k];
+    for (const TrajectoryRow& row : result.arms[k].rows()) {
       TimedRow& timed = motion.arms[k].rows.emplace_back();
       timed.t = 0.004 * static_cast<double>(motion.arms[k].rows.size() - 1);
       timed.row = row;
     }
   }
   return {"workcell_rows",
-          {io::to_workcell_csv(result), io::to_workcell_motion_csv(motion, joints),
+          {io::to_csv(result, two_arms()), io::to_workcell_motion_csv(motion, joints),
            io::workcell_motion_text(motion, joints, "base", "m.json"),
            io::workcell_motion_text(motion, joints, "base", "m.yaml"),
            io::workcell_motion_text(motion, joints, "base", "m.mcap")},

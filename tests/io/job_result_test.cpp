@@ -38,28 +38,30 @@ std::vector<TrajectoryRow> rows_at(const std::vector<double>& places, double fir
 }
 
 /// Returns the plan of two_strokes(): home, right backwards, left, home.
-JobResult plan_of_two() {
-  JobResult result;
+Answer plan_of_two() {
+  Answer result;
   result.status = PlanStatus::kSolved;
   result.cost = 6.25;
   result.lattice_cost = 6;
   result.bound = 5;
   result.bound_any = 4;
   result.planner = "parallel";
-  result.joint_names = kNames;
-  result.transitions = {7, 2, 3};
+  result.arm().joint_names = kNames;
+  result.arm().transitions = {7, 2, 3};
   const StrokeRun first{1, true}, second{0, false};
   const auto run = [&](const StrokeRun& of, double cost, std::vector<TrajectoryRow> rows) {
-    RunResult found{of};
+    RunAnswer found;
+    found.run = of;
+    found.status = PlanStatus::kSolved;
     found.least_cost = cost / 2;
-    found.measures.evidence = Evidence::all();
-    found.measures.min_clearance = 0.01;
+    found.evidence = Evidence::all();
+    found.min_clearance = 0.01;
     found.lattice.layers = static_cast<int>(rows.size());
-    result.runs.push_back(found);
-    result.parts.push_back({of, cost, std::move(rows)});
+    result.arm().runs.push_back(found);
+    result.arm().parts.push_back({of, cost, std::move(rows)});
   };
   const auto move = [&](std::vector<TrajectoryRow> rows) {
-    result.parts.push_back({std::nullopt, 1, std::move(rows)});
+    result.arm().parts.push_back({std::nullopt, 1, std::move(rows)});
   };
   move(rows_at({0, 0}, 0));
   run(first, 2, rows_at({0, 0.05, 0.1}, 0.125));
@@ -70,7 +72,7 @@ JobResult plan_of_two() {
 }
 
 TEST(JobTrajectory, HeaderAndRows) {
-  const std::string text = to_job_csv(plan_of_two(), two_strokes());
+  const std::string text = to_csv(plan_of_two(), two_strokes());
   EXPECT_TRUE(
       text.starts_with("s,phi,branch,a,b,c,d,e,f,g,stroke,process\n"
                        ",,,0.125,0.125,0.125,0.125,0.125,0.125,0.125,,0\n"
@@ -84,7 +86,7 @@ TEST(JobTrajectory, HeaderAndRows) {
 TEST(JobTrajectory, ProcessIsOnTheStrokeItself) {
   const TempFolder folder;
   const JobTrajectory read =
-      load_job_trajectory(folder.write("t.csv", to_job_csv(plan_of_two(), two_strokes())), kNames);
+      load_job_trajectory(folder.write("t.csv", to_csv(plan_of_two(), two_strokes())), kNames);
   ASSERT_EQ(read.parts.size(), 5u);
   EXPECT_EQ(read.parts[1].first_process, 0u);
   EXPECT_EQ(read.parts[1].last_process, 2u);
@@ -105,8 +107,8 @@ TEST(JobTrajectory, EveryBitIsReadAgain) {
   swivel::test::Random random(swivel::test::seed("JobTrajectory"));
   int rows = 0;
   for (int round = 0; round < 200; ++round) {
-    JobResult plan = plan_of_two();
-    for (JobPart& part : plan.parts)
+    Answer plan = plan_of_two();
+    for (Part& part : plan.arm().parts)
       for (TrajectoryRow& row : part.rows) {
         ++rows;
         for (double& angle : row.q)
@@ -117,12 +119,12 @@ TEST(JobTrajectory, EveryBitIsReadAgain) {
         if (round % 2 == 1) row.roll = random.uniform(-4, 4);
       }
     const JobTrajectory read =
-        load_job_trajectory(folder.write("t.csv", to_job_csv(plan, two_strokes())), kNames);
+        load_job_trajectory(folder.write("t.csv", to_csv(plan, two_strokes())), kNames);
     EXPECT_TRUE(read.stated.rows());
-    ASSERT_EQ(read.parts.size(), plan.parts.size());
+    ASSERT_EQ(read.parts.size(), plan.arm().parts.size());
     std::size_t row = 0;
-    for (std::size_t k = 0; k < plan.parts.size(); ++k) {
-      const JobPart& part = plan.parts[k];
+    for (std::size_t k = 0; k < plan.arm().parts.size(); ++k) {
+      const Part& part = plan.arm().parts[k];
       EXPECT_EQ(read.parts[k].stroke,
                 part.run ? two_strokes().arm().strokes[part.run->stroke].name : "");
       EXPECT_EQ(read.parts[k].first_row, row);
@@ -270,7 +272,7 @@ TEST(JobResult, Solved) {
   EXPECT_EQ(json["parts"][3]["rows"][1]["process"], false);
   EXPECT_EQ(json["parts"][3]["rows"][2]["process"], true);
   EXPECT_EQ(json["parts"][3]["rows"][2]["branch"], 5);
-  JobResult optimal = plan_of_two();
+  Answer optimal = plan_of_two();
   optimal.bound = optimal.lattice_cost;
   EXPECT_EQ(Json::parse(to_job_json(optimal, two_strokes()))["gap"], 0.0);
   optimal.lattice_cost = optimal.bound = 0;
@@ -280,16 +282,16 @@ TEST(JobResult, Solved) {
 }
 
 /// Returns the result where a stroke has no path, or where no way leads to a run.
-JobResult without_a_job(bool stroke) {
-  JobResult result = plan_of_two();
+Answer without_a_job(bool stroke) {
+  Answer result = plan_of_two();
   result.status = PlanStatus::kInfeasible;
-  result.parts.clear();
+  result.arm().parts.clear();
   if (stroke) {
-    result.runs[0].status = PlanStatus::kInfeasible;
-    result.runs[0].diagnosis.emplace();
+    result.arm().runs[0].status = PlanStatus::kInfeasible;
+    result.arm().runs[0].diagnosis.emplace();
     return result;
   }
-  result.no_transition = {
+  result.arm().no_transition = {
       .to = 2, .where = NoTransition::Where::kEndBefore, .bodies = {{"link_5", "post"}}};
   return result;
 }
@@ -374,17 +376,17 @@ TEST(JobResult, KeysAreThoseOfTheSchema) {
   for (const Json& option : schema["anyOf"])
     if (option["properties"].contains("parts")) add_keys_of_schema(option, "", known);
   EXPECT_GE(known.size(), 100u);
-  JobResult turning = plan_of_two();
-  turning.parts[1].rows[0].roll = 0.1;
-  JobResult unproved = turning;
-  unproved.partial.swap(unproved.parts);
-  for (const JobResult& result : {turning, unproved, without_a_job(true), without_a_job(false)})
+  Answer turning = plan_of_two();
+  turning.arm().parts[1].rows[0].roll = 0.1;
+  Answer unproved = turning;
+  unproved.arm().partial.swap(unproved.arm().parts);
+  for (const Answer& result : {turning, unproved, without_a_job(true), without_a_job(false)})
     add_keys(Json::parse(to_job_json(result, two_strokes())), "", seen);
   const JobTimingResult timed = timed_plan(true);
   add_keys(Json::parse(to_job_json(plan_of_two(), two_strokes(), {&timed})), "", seen);
-  JobResult lifted = plan_of_two();
-  lifted.lift_offs.push_back({{0, 0.05, 0.05}, 0.06, {.kind = Cause::Kind::kSingular}});
-  add_keys(Json::parse(to_job_json(lifted, executed_job(two_strokes(), lifted))), "", seen);
+  Answer lifted = plan_of_two();
+  lifted.arm().lift_offs.push_back({{0, 0.05, 0.05}, 0.06, {.kind = Cause::Kind::kSingular}});
+  add_keys(Json::parse(to_job_json(lifted, executed_problem(two_strokes(), lifted))), "", seen);
   AdviceOnJob advice;
   advice.job.push_back({.change = JobAdvice::Change::kHome, .strokes = {}, .home = Config::Zero()});
   advice.strokes.push_back({"left", {Advice{}}});

@@ -135,18 +135,19 @@ PlanResult infeasible() {
   reach.side = Cause::Side::kUpper;
   reach.value = 0.75;
   reach.limit = 0.5;
-  result.diagnosis.cause = limit;
-  result.diagnosis.at_s = 0.35;
-  result.diagnosis.waypoints = {3, 4};
-  result.diagnosis.without_it = 20;
-  result.diagnosis.without_it_s = 0.45;
-  result.diagnosis.reached_layer = 12;
-  result.diagnosis.reached_s = 0.34;
-  result.diagnosis.empty_layers = {{13, 14, 0.35, 0.36, 4, 4, reach, 0.3},
-                                   {15, 15, 0.37, 0.37, -1, -1, pair, {}}};
-  result.diagnosis.removed = {{reach, 9}};
-  result.diagnosis.complete = false;
-  result.diagnosis.layers_known = 16;
+  result.diagnosis.emplace();
+  result.diagnosis->cause = limit;
+  result.diagnosis->at_s = 0.35;
+  result.diagnosis->waypoints = {3, 4};
+  result.diagnosis->without_it = 20;
+  result.diagnosis->without_it_s = 0.45;
+  result.diagnosis->reached_layer = 12;
+  result.diagnosis->reached_s = 0.34;
+  result.diagnosis->empty_layers = {{13, 14, 0.35, 0.36, 4, 4, reach, 0.3},
+                                    {15, 15, 0.37, 0.37, -1, -1, pair, {}}};
+  result.diagnosis->removed = {{reach, 9}};
+  result.diagnosis->complete = false;
+  result.diagnosis->layers_known = 16;
   return result;
 }
 
@@ -198,11 +199,11 @@ TEST(Result, ResolutionsThatADiagnosisHoldsFor) {
   const Json diagnosis = Json::parse(to_json(result))["diagnosis"];
   EXPECT_EQ(diagnosis["holds"], "this_resolution");
   EXPECT_TRUE(diagnosis["unreachable"].is_null());
-  result.diagnosis.unreachable = {14, 0.36, -1};
+  result.diagnosis->unreachable = {14, 0.36, -1};
   EXPECT_EQ(Json::parse(to_json(result))["diagnosis"]["holds"], "exact_tool");
   EXPECT_EQ(Json::parse(to_json(result))["diagnosis"]["unreachable"],
             Json::parse(R"({"layer": 14, "s": 0.36, "waypoint": null})"));
-  result.diagnosis.unreachable->waypoint = 4;
+  result.diagnosis->unreachable->waypoint = 4;
   EXPECT_EQ(Json::parse(to_json(result))["diagnosis"]["holds"], "every_resolution");
 }
 
@@ -234,6 +235,7 @@ TEST(Result, NoContactIsToldFromContactThatWasNotMeasured) {
 
 TEST(Result, EmptyFirstLayerAndTimeOut) {
   PlanResult result;
+  result.diagnosis.emplace();
   EXPECT_TRUE(Json::parse(to_json(result))["diagnosis"]["reached_s"].is_null());
   result.status = PlanStatus::kTimeout;
   EXPECT_EQ(Json::parse(to_json(result))["status"], "timeout");

@@ -450,19 +450,22 @@ TEST(Trajectory, RollsOfTwoArmsAreNamedByArm) {
   const std::array<std::string, 2> names{"left", "right"};
   const std::array<JointNames, 2> joints{
       {{"a", "b", "c", "d", "e", "f", "roll"}, {"g", "h", "i", "j", "k", "l", "roll"}}};
-  WorkcellResult result;
+  Answer result;
   WorkcellMotion motion;
-  result.names = motion.names = names;
+  result.arms.clear();
+  motion.names = names;
   for (std::size_t k = 0; k < 2; ++k) {
-    result.arms[k] = random_result(3);
+    result.arms.push_back(answer_of(random_result(3)).arm());
+    result.arms[k].name = names[k];
     result.arms[k].joint_names = joints[k];
     for (std::size_t i = 0; i < 3; ++i) {
       TimedRow& row = motion.arms[k].rows.emplace_back();
       row.t = static_cast<double>(i) / 250;
-      row.row = result.arms[k].trajectory[i];
+      row.row = result.arms[k].rows()[i];
     }
   }
-  const std::string rows = to_workcell_csv(result), timed = to_workcell_motion_csv(motion, joints);
+  const std::string rows = to_csv(result, two_arms()),
+                    timed = to_workcell_motion_csv(motion, joints);
   EXPECT_TRUE(rows.starts_with(
       "s_left,s_right,phi_left,phi_right,branch_left,branch_right,a,b,c,d,e,f,roll_left,g,h,i,j,k,"
       "l,roll_right\n"));
@@ -479,7 +482,7 @@ TEST(Trajectory, RollsOfTwoArmsAreNamedByArm) {
       EXPECT_EQ(read.timed[0].empty(), text == rows);
       for (std::size_t k = 0; k < 2; ++k)
         for (std::size_t i = 0; i < 3; ++i)
-          EXPECT_EQ(read.rows[k].at(i).q, result.arms[k].trajectory[i].q);
+          EXPECT_EQ(read.rows[k].at(i).q, result.arms[k].rows()[i].q);
     }
   }
 }

@@ -15,6 +15,7 @@
 #include <sstream>
 #include <tuple>
 
+#include "diagnosis_of.hpp"
 #include "robots.hpp"
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/lattice/kinds/arc_lattice.hpp"
@@ -428,7 +429,7 @@ void check_path_of_maps(const ThreeMaps& maps, const SrsLattice& lattice) {
     EXPECT_EQ(lazy.map.path, eager.map.path);
   } else {
     EXPECT_EQ(static_cast<int>(lazy.map.path.size()),
-              lazy.result.diagnosis.reached_layer.value_or(-1) + 1);
+              diagnosis_of(lazy.result).reached_layer.value_or(-1) + 1);
   }
 }
 

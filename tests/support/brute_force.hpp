@@ -15,7 +15,7 @@
 
 namespace swivel::test {
 
-struct Answer {
+struct BruteForcePath {
   bool solved = false;
   double cost = 0;
   std::vector<int> slots;
@@ -64,9 +64,9 @@ inline std::vector<double> closed_costs_of(
 /// Costs and order are those of the nodes; all that is tested is tested on the rows, the exact
 /// configurations. `in_window`: whether slots a and b of neighbouring layers may be joined. Hooks
 /// are asked about one state or motion at a time.
-inline Answer brute_force(const Lattice& lattice, const World& world, const EdgeRule& rule,
-                          const std::function<bool(int layer, int a, int b)>& in_window,
-                          const Hooks& hooks = {}) {
+inline BruteForcePath brute_force(const Lattice& lattice, const World& world, const EdgeRule& rule,
+                                  const std::function<bool(int layer, int a, int b)>& in_window,
+                                  const Hooks& hooks = {}) {
   World::Query query(world);
   const Chain& chain = lattice.chain();
   const Limits& limits = lattice.limits();
@@ -166,7 +166,7 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
         }
       }
     }
-  Answer answer;
+  BruteForcePath answer;
   if (lattice.is_closed())
     answer.closed_costs = closed_costs_of(into, own_cost, [&](std::size_t i, std::size_t slot) {
       return nodes[i][slot].has_value();

@@ -144,7 +144,7 @@ inline PathProblem coarse_ring(const RingArm& arm, Random& random, bool spins) {
 /// all starts.
 struct RingTruth {
   std::unique_ptr<const Lattice> lattice;
-  Answer open;
+  BruteForcePath open;
   int start = -1;  // the slot in which the answer begins; -1 where no path closes
   double cost = std::numeric_limits<double>::infinity();
 };

@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "answer/answer_words.hpp"
 #include "swivel/core/base/types.hpp"
 #include "swivel/core/messages/formatted.hpp"
 
@@ -33,8 +34,7 @@ std::string line_of(const EmptyLayers& run) {
 
 /// Returns a line that says what else must be removed besides the cause, or how far paths go
 /// without the cause.
-std::string without_text(const PlanResult& result) {
-  const Diagnosis& d = result.diagnosis;
+std::string without_text(const Diagnosis& d) {
   if (!d.together.empty()) {
     std::string line = "  no single thing stands in the way: besides it";
     for (std::size_t k = 0; k < d.together.size(); ++k)
@@ -48,14 +48,14 @@ std::string without_text(const PlanResult& result) {
                    *d.without_it_s);
 }
 
-std::string diagnosis_text(const PlanResult& result) {
-  const Diagnosis& d = result.diagnosis;
+std::string diagnosis_text(const RunAnswer& run, const std::vector<HeldJoint>& held) {
+  const Diagnosis& d = *run.diagnosis;
   const std::string claim =
       d.holds() == Diagnosis::Holds::kEveryResolution ? "no path at any resolution"
       : d.holds() == Diagnosis::Holds::kExactTool     ? "no path for a tool that follows exactly"
-      : result.lattice.complete                       ? "no path at this resolution"
-                                : "no path found, among the solutions that were found";
-  const std::string none = claim + with_held(result.held);
+      : run.lattice.complete                          ? "no path at this resolution"
+                             : "no path found, among the solutions that were found";
+  const std::string none = claim + with_held(held);
   if (d.cause.kind == Cause::Kind::kNotClosed)
     return none +
            ": paths reach the end, but none in the joints in which it begins "
@@ -66,10 +66,10 @@ std::string diagnosis_text(const PlanResult& result) {
   std::string answer =
       d.reached_layer ? none +
                             formatted(": every one ends by layer %d of %d (s = %.4f m), where ",
-                                      *d.reached_layer, result.lattice.layers - 1, *d.reached_s) +
+                                      *d.reached_layer, run.lattice.layers - 1, *d.reached_s) +
                             why + " stops it\n"
                       : none + ": the first layer has no valid node: " + why + '\n';
-  answer += without_text(result);
+  answer += without_text(d);
   if (d.unreachable) {
     answer += formatted("  layer %d", d.unreachable->layer);
     if (d.unreachable->waypoint >= 0)
@@ -83,18 +83,19 @@ std::string diagnosis_text(const PlanResult& result) {
   if (d.empty_layers.size() > kMostLines)
     answer +=
         formatted("  ... and %zu more, listed in --json\n", d.empty_layers.size() - kMostLines);
-  if (!d.complete && d.layers_known < result.lattice.layers)
+  if (!d.complete && d.layers_known < run.lattice.layers)
     answer += formatted("  layers from %d on were not looked at\n", d.layers_known);
   return answer;
 }
 
-std::string held_text(const PlanResult& result) {
-  return result.held.empty() ? "" : " | held: " + words(result.held);
+std::string held_text(const std::vector<HeldJoint>& held) {
+  return held.empty() ? "" : " | held: " + words(held);
 }
 
-std::string solved_text(const PlanResult& result) {
-  const auto s_of = [&](int row) { return result.trajectory[static_cast<std::size_t>(row)].s; };
-  std::string line = formatted("solved: %d layers, cost %.6g", result.lattice.layers, result.cost);
+std::string solved_text(const RunAnswer& result, const std::vector<TrajectoryRow>& rows,
+                        double cost, const std::vector<HeldJoint>& held) {
+  const auto s_of = [&](int row) { return rows[static_cast<std::size_t>(row)].s; };
+  std::string line = formatted("solved: %d layers, cost %.6g", result.lattice.layers, cost);
   if (const auto& least = result.min_margin)
     line += formatted(" | least clearance %.1f mm (asked %.3g) at s %.3f: ", 1e3 * least->clearance,
                       1e3 * least->required, s_of(least->row)) +
@@ -119,20 +120,28 @@ std::string solved_text(const PlanResult& result) {
     line += formatted(" | tool speed up to %.3g m/s (", top->speed) + top->joint + ")";
   if (const std::string missing = words_of_unmeasured(result); !missing.empty())
     line += " | not measured, for time ran out: " + missing;
-  return line + held_text(result) + '\n';
+  return line + held_text(held) + '\n';
 }
 
 }  // namespace
 
+std::string run_text(const RunAnswer& run, const std::vector<HeldJoint>& held, const Part* part) {
+  if (part != nullptr) return solved_text(run, part->rows, part->cost, held);
+  if (run.diagnosis) return diagnosis_text(run, held);
+  return std::string("stopped: ") + to_string(run.status) + held_text(held) + '\n';
+}
+
+std::string answer_text(const Answer& answer, const Problem& problem) {
+  if (answer.arms.size() == 2) return text_of_two_arms(answer);
+  if (!is_path(problem)) return text_of_strokes(answer, problem);
+  const ArmAnswer& arm = answer.arm();
+  return run_text(arm.run(), arm.held, answer.has_rows() ? &arm.parts.front() : nullptr);
+}
+
 std::string answer_text(const PlanResult& result) {
-  switch (result.status) {
-    case PlanStatus::kSolved:
-      return solved_text(result);
-    case PlanStatus::kInfeasible:
-      return diagnosis_text(result);
-    default:
-      return std::string("stopped: ") + to_string(result.status) + held_text(result) + '\n';
-  }
+  if (result.status == PlanStatus::kSolved)
+    return solved_text(result, result.trajectory, result.cost, result.held);
+  return run_text(result, result.held);
 }
 
 std::string advice_text(const std::vector<Advice>& advice) {

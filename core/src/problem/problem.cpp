@@ -158,6 +158,10 @@ std::size_t lift_off_count(const Problem& job) {
   return count;
 }
 
+std::string words(const StrokeRun& run, const Problem& problem) {
+  return "'" + problem.arm().strokes[run.stroke].name + "'" + (run.reversed ? " backwards" : "");
+}
+
 std::optional<std::size_t> find_stroke(const Problem& job, const std::string& name) {
   for (std::size_t k = 0; k < job.arm().strokes.size(); ++k)
     if (job.arm().strokes[k].name == name) return k;

@@ -47,6 +47,41 @@ Spread spread(const std::vector<EpisodeRow>& rows, Value EpisodeRow::*member) {
   return {quantile(0.5), quantile(0.05), quantile(0.95)};
 }
 
+/// Returns the time that lattices, search and order took: the stage "plan", or where that is not
+/// noted the sum of its stages.
+double planning_ms(const std::map<std::string, double>& time_ms) {
+  if (const auto plan = time_ms.find("plan"); plan != time_ms.end()) return plan->second;
+  double sum = 0;
+  for (const char* const stage : {"lattice", "find", "search", "order"})
+    if (const auto time = time_ms.find(stage); time != time_ms.end()) sum += time->second;
+  return sum;
+}
+
+/// Returns the mean tool-path error of an arm's rows, mm: of several runs weighted by their steps.
+double mean_tool_path_error(const ArmAnswer& arm) {
+  if (arm.runs.size() == 1) return arm.run().tool_path_error_mm.mean;
+  double sum = 0, steps = 0;
+  std::size_t run = 0;
+  for (const Part& part : arm.parts) {
+    if (!part.run) continue;
+    const double weight = static_cast<double>(part.rows.size()) - 1;
+    sum += weight * arm.runs[run++].tool_path_error_mm.mean;
+    steps += weight;
+  }
+  return sum / steps;
+}
+
+/// Sets the tool-path errors of a row. Two arms have as many steps.
+void take_tool_path_errors(const Answer& answer, EpisodeRow& row) {
+  double sum = 0, most = 0;
+  for (const ArmAnswer& arm : answer.arms) {
+    sum += mean_tool_path_error(arm);
+    for (const RunAnswer& run : arm.runs) most = std::max(most, run.tool_path_error_mm.max);
+  }
+  row.tool_path_error_mm_mean = sum / static_cast<double>(answer.arms.size());
+  row.tool_path_error_mm_max = most;
+}
+
 }  // namespace
 
 PathProblem episode_problem(const PathProblem& problem, std::uint64_t seed, std::uint64_t episode) {
@@ -81,72 +116,18 @@ std::vector<double> episode_offsets(const std::vector<Variation>& vary, std::uin
   return offsets;
 }
 
-EpisodeRow::EpisodeRow(std::uint64_t number, const PlanResult& result, const PathProblem& problem)
-    : episode(number),
-      status(result.status),
-      nodes_checked(result.counters.nodes_checked),
-      fcl_calls(result.counters.fcl_calls) {
-  if (const auto plan = result.time_ms.find("plan"); plan != result.time_ms.end())
-    plan_ms = plan->second;
-  if (status == PlanStatus::kSolved) {
-    cost = result.cost;
-    checked = result.checked;
-    tool_path_error_mm_mean = result.tool_path_error_mm.mean;
-    tool_path_error_mm_max = result.tool_path_error_mm.max;
-  } else if (status == PlanStatus::kInfeasible) {
-    failed_s = result.diagnosis.reached_s;
-    if (result.diagnosis.cause.kind != Cause::Kind::kNone)
-      cause = to_string(result.diagnosis.cause.kind);
-    by = subject_of(result.diagnosis.cause, problem.scene);
-    reason = words(result.diagnosis.cause);
-  }
-}
-
-EpisodeRow::EpisodeRow(std::uint64_t number, const JobResult& result, const Problem& job)
-    : episode(number),
-      status(result.status),
-      nodes_checked(result.counters.nodes_checked),
-      fcl_calls(result.counters.fcl_calls) {
-  for (const char* const stage : {"lattice", "find", "order"})
-    if (const auto time = result.time_ms.find(stage); time != result.time_ms.end())
-      plan_ms += time->second;
-  if (status == PlanStatus::kSolved) {
-    cost = result.cost;
-    checked = result.checked;
-    double sum = 0, steps = 0, most = 0;
-    std::size_t run = 0;
-    for (const JobPart& part : result.parts) {
-      if (!part.run) continue;
-      const auto& error = result.runs[run++].measures.tool_path_error_mm;
-      const double weight = static_cast<double>(part.rows.size()) - 1;
-      sum += weight * error.mean;
-      steps += weight;
-      most = std::max(most, error.max);
-    }
-    tool_path_error_mm_mean = sum / steps;
-    tool_path_error_mm_max = most;
-  } else if (status == PlanStatus::kInfeasible) {
-    failure_of(result, job).tell(*this);
-  }
-}
-
-EpisodeRow::EpisodeRow(std::uint64_t number, const WorkcellResult& result, const Problem& cell)
-    : episode(number), status(result.status) {
-  for (const char* const stage : {"lattice", "search"})
-    if (const auto time = result.time_ms.find(stage); time != result.time_ms.end())
-      plan_ms += time->second;
-  for (const PlanResult& arm : result.arms) {
+EpisodeRow::EpisodeRow(std::uint64_t number, const Answer& answer, const Problem& problem)
+    : episode(number), status(answer.status), plan_ms(planning_ms(answer.time_ms)) {
+  for (const ArmAnswer& arm : answer.arms) {
     nodes_checked += arm.counters.nodes_checked;
     fcl_calls += arm.counters.fcl_calls;
   }
   if (status == PlanStatus::kSolved) {
-    cost = result.cost;
-    checked = result.checked;
-    const PlanResult &first = result.arms[0], &second = result.arms[1];  // of as many steps
-    tool_path_error_mm_mean = (first.tool_path_error_mm.mean + second.tool_path_error_mm.mean) / 2;
-    tool_path_error_mm_max = std::max(first.tool_path_error_mm.max, second.tool_path_error_mm.max);
+    cost = answer.cost;
+    checked = answer.checked;
+    take_tool_path_errors(answer, *this);
   } else if (status == PlanStatus::kInfeasible) {
-    failure_of(result, cell).tell(*this);
+    failure_of(answer, problem).tell(*this);
   }
 }
 

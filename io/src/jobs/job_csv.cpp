@@ -25,13 +25,12 @@ const Schema& job_trajectory_schema() {
   return schema;
 }
 
-bool any_rolls(const JobResult& result) {
-  const auto any = [](const std::vector<JobPart>& parts) {
-    return std::any_of(parts.begin(), parts.end(), [](const JobPart& part) {
-      return part.run && swivel::any_rolls(part.rows);
-    });
+bool any_rolls(const ArmAnswer& arm) {
+  const auto any = [](const std::vector<Part>& parts) {
+    return std::any_of(parts.begin(), parts.end(),
+                       [](const Part& part) { return part.run && swivel::any_rolls(part.rows); });
   };
-  return any(result.parts) || any(result.partial);
+  return any(arm.parts) || any(arm.partial);
 }
 
 std::string placeless_fields(const TrajectoryRow& row, bool roll) {
@@ -48,13 +47,13 @@ std::vector<std::string> job_header(const JointNames& joint_names, bool roll) {
 
 }  // namespace
 
-std::string to_job_csv(const JobResult& result, const Problem& job) {
+std::string strokes_csv(const ArmAnswer& arm, const Problem& job) {
   std::string text;
-  const bool roll = any_rolls(result);
-  for (const std::string& name : job_header(result.joint_names, roll))
+  const bool roll = any_rolls(arm);
+  for (const std::string& name : job_header(arm.joint_names, roll))
     text += (text.empty() ? "" : ",") + csv_field(name);
   text += '\n';
-  for (const JobPart& part : result.parts) {
+  for (const Part& part : arm.parts) {
     const std::string stroke =
         part.run ? csv_line_field(job.arm().strokes[part.run->stroke].name) : "";
     const std::vector<bool> process = process_of_rows(part, job);

@@ -7,13 +7,13 @@
 
 #include "motions/messages.hpp"
 #include "motions/trajectory_formats.hpp"
-#include "swivel/core/answer/job_result.hpp"
+#include "swivel/core/answer/answer.hpp"
 #include "swivel/io/jobs/job_trajectory.hpp"
 
 namespace swivel::io {
 
-/// Returns true if a row of a stroke of the job has a roll other than 0.
-[[nodiscard]] bool any_rolls(const JobResult& result);
+/// Returns true if a row of a stroke has a roll other than 0.
+[[nodiscard]] bool any_rolls(const ArmAnswer& arm);
 
 /// Returns the fields of a row without a place on a stroke: those before the joints are empty.
 [[nodiscard]] std::string placeless_fields(const TrajectoryRow& row, bool roll);

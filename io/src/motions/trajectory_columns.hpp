@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "schema/schema.hpp"
-#include "swivel/core/answer/plan.hpp"
+#include "swivel/core/answer/answer.hpp"
 
 namespace swivel::io {
 
@@ -16,5 +16,10 @@ namespace swivel::io {
                                                   bool roll);
 /// Returns the fields of a trajectory row, separated by commas; the roll only if `roll` is true.
 [[nodiscard]] std::string trajectory_fields(const TrajectoryRow& row, bool roll);
+
+/// Returns the trajectory of an arm that runs strokes as CSV, with `stroke` and `process`.
+[[nodiscard]] std::string strokes_csv(const ArmAnswer& arm, const Problem& problem);
+/// Returns the trajectories of two arms as CSV.
+[[nodiscard]] std::string two_arms_csv(const Answer& answer);
 
 }  // namespace swivel::io

@@ -57,14 +57,29 @@ std::string trajectory_fields(const TrajectoryRow& row, bool roll) {
   return text;
 }
 
-std::string to_csv(const PlanResult& result) {
+namespace {
+
+std::string path_csv(const std::vector<TrajectoryRow>& rows,
+                     const std::array<std::string, kDof>& joint_names) {
   std::string text;
-  const bool roll = any_rolls(result.trajectory);
-  for (const std::string& name : csv_header(trajectory_schema(), result.joint_names, roll))
+  const bool roll = any_rolls(rows);
+  for (const std::string& name : csv_header(trajectory_schema(), joint_names, roll))
     text.append(text.empty() ? "" : ",").append(csv_field(name));
   text += '\n';
-  for (const TrajectoryRow& row : result.trajectory) text += trajectory_fields(row, roll) + '\n';
+  for (const TrajectoryRow& row : rows) text += trajectory_fields(row, roll) + '\n';
   return text;
+}
+
+}  // namespace
+
+std::string to_csv(const Answer& answer, const Problem& problem) {
+  if (answer.arms.size() == 2) return two_arms_csv(answer);
+  if (!is_path(problem)) return strokes_csv(answer.arm(), problem);
+  return path_csv(answer.arm().rows(), answer.arm().joint_names);
+}
+
+std::string to_csv(const PlanResult& result) {
+  return path_csv(result.trajectory, result.joint_names);
 }
 
 void write_trajectory(const std::filesystem::path& csv, const PlanResult& result) {

@@ -12,12 +12,13 @@ namespace {
 /// Writes the result of a job.
 class JobWriter {
  public:
-  JobWriter(const JobResult& result, const Problem& job, const JobExtras& extras)
+  JobWriter(const Answer& result, const Problem& job, const JobExtras& extras)
       : result_(result),
+        arm_(result.arm()),
         job_(job),
         extras_(extras),
-        solved_(!result.parts.empty()),
-        roll_(any_rolls(result)) {}
+        solved_(result.has_rows()),
+        roll_(any_rolls(result.arm())) {}
 
   [[nodiscard]] Json write() const {
     Json json;
@@ -37,18 +38,18 @@ class JobWriter {
     json["lift_offs"] = lift_offs();
     json["no_transition"] = no_transition();
     json["advice"] = extras_.advice ? advice(*extras_.advice) : Json(nullptr);
-    json["counters"] = counters_json(result_.counters);
-    json["transition_counters"] = {{"pairs", result_.transitions.pairs},
-                                   {"searches", result_.transitions.searches},
-                                   {"rounds", result_.transitions.rounds}};
+    json["counters"] = counters_json(arm_.counters);
+    json["transition_counters"] = {{"pairs", arm_.transitions.pairs},
+                                   {"searches", arm_.transitions.searches},
+                                   {"rounds", arm_.transitions.rounds}};
     json["time_ms"] = time_json(result_.time_ms);
     json["motion"] = motion();
-    json["parts"] = parts(result_.parts);
-    json["partial"] = parts(result_.partial);
-    json["robot_pairs"] = robot_pairs_json(result_.dropped_pairs, result_.reduced_pairs);
-    json["held"] = held_json(result_.held);
+    json["parts"] = parts(arm_.parts);
+    json["partial"] = parts(arm_.partial);
+    json["robot_pairs"] = robot_pairs_json(arm_.dropped_pairs, arm_.reduced_pairs);
+    json["held"] = held_json(arm_.held);
     json["warnings"] = result_.warnings;
-    json["joint_names"] = result_.joint_names;
+    json["joint_names"] = arm_.joint_names;
     return json;
   }
 
@@ -65,27 +66,26 @@ class JobWriter {
   }
   /// Returns the name of the run that a transition leads from or to; null for the home.
   [[nodiscard]] Json name_or_home(std::size_t part) const {
-    return part < result_.parts.size() && result_.parts[part].run
-               ? Json(name(*result_.parts[part].run))
-               : Json(nullptr);
+    return part < arm_.parts.size() && arm_.parts[part].run ? Json(name(*arm_.parts[part].run))
+                                                            : Json(nullptr);
   }
 
   [[nodiscard]] Json order() const {
     Json list = Json::array();
-    for (const RunResult& one : result_.runs)
+    for (const RunAnswer& one : arm_.runs)
       list.push_back({{"stroke", name(one.run)}, {"reversed", one.run.reversed}});
     return list;
   }
 
   /// Returns the part of the motion that is this run; null where there is none.
-  [[nodiscard]] const JobPart* part_of(const StrokeRun& run) const {
-    for (const JobPart& part : result_.parts)
+  [[nodiscard]] const Part* part_of(const StrokeRun& run) const {
+    for (const Part& part : arm_.parts)
       if (part.run == run) return &part;
     return nullptr;
   }
 
   /// Returns the rows of a part; those of a run count s along the whole of its stroke.
-  [[nodiscard]] std::vector<TrajectoryRow> rows_of(const JobPart& part) const {
+  [[nodiscard]] std::vector<TrajectoryRow> rows_of(const Part& part) const {
     std::vector<TrajectoryRow> rows = part.rows;
     if (part.run)
       for (TrajectoryRow& row : rows) row.s += s_of_piece(job_.arm().strokes[part.run->stroke]);
@@ -94,18 +94,18 @@ class JobWriter {
 
   [[nodiscard]] Json runs() const {
     Json list = Json::array();
-    for (const RunResult& one : result_.runs) {
-      const JobPart* const part = part_of(one.run);
+    for (const RunAnswer& one : arm_.runs) {
+      const Part* const part = part_of(one.run);
       const bool has_path = one.status == PlanStatus::kSolved;
-      Json json = {{"stroke", name(one.run)},
-                   {"reversed", one.run.reversed},
-                   {"status", to_string(one.status)},
-                   {"least_cost", has_path ? Json(one.least_cost) : Json(nullptr)},
-                   {"cost", part ? Json(part->cost) : Json(nullptr)},
-                   {"summary", summary_json(one.measures,
-                                            part ? rows_of(*part) : std::vector<TrajectoryRow>())},
-                   {"lattice", lattice_json(one.lattice, part != nullptr)}};
-      add_measures(json, one.measures, part != nullptr);
+      Json json = {
+          {"stroke", name(one.run)},
+          {"reversed", one.run.reversed},
+          {"status", to_string(one.status)},
+          {"least_cost", has_path ? Json(one.least_cost) : Json(nullptr)},
+          {"cost", part ? Json(part->cost) : Json(nullptr)},
+          {"summary", summary_json(one, part ? rows_of(*part) : std::vector<TrajectoryRow>())},
+          {"lattice", lattice_json(one.lattice, part != nullptr)}};
+      add_measures(json, one, part != nullptr);
       json["diagnosis"] = one.diagnosis ? diagnosis_json(*one.diagnosis) : Json(nullptr);
       list.push_back(std::move(json));
     }
@@ -114,8 +114,8 @@ class JobWriter {
 
   [[nodiscard]] Json transitions() const {
     Json list = Json::array();
-    for (std::size_t k = 0; k < result_.parts.size(); ++k) {
-      const JobPart& part = result_.parts[k];
+    for (std::size_t k = 0; k < arm_.parts.size(); ++k) {
+      const Part& part = arm_.parts[k];
       if (part.run) continue;
       list.push_back({{"from", k == 0 ? Json(nullptr) : name_or_home(k - 1)},
                       {"to", name_or_home(k + 1)},
@@ -129,7 +129,7 @@ class JobWriter {
     Json list = Json::array();
     // strokes are counted as the problem file has them
     std::size_t part = 0, stroke = 0;
-    for (const LiftOffResult& lift : result_.lift_offs) {
+    for (const LiftOffAnswer& lift : arm_.lift_offs) {
       for (; stroke < lift.stroke; ++stroke) {
         const auto& piece = job_.arm().strokes[part].piece;
         const std::string whole = piece ? piece->stroke : "";
@@ -150,10 +150,10 @@ class JobWriter {
   }
 
   [[nodiscard]] Json no_transition() const {
-    const std::optional<NoTransition>& none = result_.no_transition;
+    const std::optional<NoTransition>& none = arm_.no_transition;
     if (!none) return nullptr;
     const auto run = [&](std::size_t k) {
-      return k < result_.runs.size() ? Json(name(result_.runs[k].run)) : Json(nullptr);
+      return k < arm_.runs.size() ? Json(name(arm_.runs[k].run)) : Json(nullptr);
     };
     return {{"from", none->to == 0 ? Json(nullptr) : run(none->to - 1)},
             {"to", run(none->to)},
@@ -203,9 +203,9 @@ class JobWriter {
     return json;
   }
 
-  [[nodiscard]] Json parts(const std::vector<JobPart>& parts) const {
+  [[nodiscard]] Json parts(const std::vector<Part>& parts) const {
     Json list = Json::array();
-    for (const JobPart& part : parts) {
+    for (const Part& part : parts) {
       const std::vector<bool> process = process_of_rows(part, job_);
       Json rows = Json::array();
       for (const TrajectoryRow& row : rows_of(part)) {
@@ -220,7 +220,8 @@ class JobWriter {
     return list;
   }
 
-  const JobResult& result_;
+  const Answer& result_;
+  const ArmAnswer& arm_;
   const Problem& job_;
   const JobExtras& extras_;
   const bool solved_, roll_;
@@ -228,7 +229,7 @@ class JobWriter {
 
 }  // namespace
 
-std::string to_job_json(const JobResult& result, const Problem& job, const JobExtras& extras) {
+std::string to_job_json(const Answer& result, const Problem& job, const JobExtras& extras) {
   return document_of(JobWriter(result, job, extras).write());
 }
 

@@ -93,8 +93,9 @@ std::string to_json(const PlanResult& result, const PlanExtras& extras) {
   json["refinement"] = extras.refinement ? refinement_json(*extras.refinement) : Json(nullptr);
   json["motion"] = extras.motion ? motion_json(*extras.motion, extras.timing, result.joint_names)
                                  : Json(nullptr);
-  json["diagnosis"] =
-      result.status == PlanStatus::kInfeasible ? diagnosis_json(result.diagnosis) : Json(nullptr);
+  json["diagnosis"] = result.status == PlanStatus::kInfeasible && result.diagnosis
+                          ? diagnosis_json(*result.diagnosis)
+                          : Json(nullptr);
   json["advice"] = extras.advice ? advice_json(*extras.advice) : Json(nullptr);
   json["certificate"] = extras.certificate
                             ? certificate_json(*extras.certificate, extras.certificate_bytes)

@@ -14,26 +14,25 @@ Json finite_or_null(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-Json arm_json(const WorkcellResult& result, std::size_t arm) {
-  const PlanResult& plan = result.arms[arm];
-  const bool solved = !plan.trajectory.empty();
-  const bool no_path =
-      result.status == PlanStatus::kInfeasible && !std::isfinite(result.least_costs[arm]);
-  Json json = {{"name", result.names[arm]},
-               {"given", result.given_arm == arm},
-               {"least_cost", finite_or_null(result.least_costs[arm])},
-               {"cost", solved ? Json(plan.cost) : Json(nullptr)},
-               {"summary", summary_json(plan, plan.trajectory)},
-               {"lattice", lattice_json(plan.lattice, solved)}};
-  add_measures(json, plan, solved);
-  json["counters"] = counters_json(plan.counters);
-  json["diagnosis"] = no_path ? diagnosis_json(plan.diagnosis) : Json(nullptr);
-  json["trajectory"] = solved ? trajectory_json(plan.trajectory) : Json(nullptr);
-  json["partial"] = trajectory_json(plan.partial);
-  json["robot_pairs"] = robot_pairs_json(plan.dropped_pairs, plan.reduced_pairs);
-  json["held"] = held_json(plan.held);
-  json["warnings"] = plan.warnings;
-  json["joint_names"] = plan.joint_names;
+Json arm_json(const ArmAnswer& arm) {
+  const RunAnswer& run = arm.run();
+  const bool solved = !arm.parts.empty();
+  Json json = {{"name", arm.name},
+               {"given", arm.given},
+               {"least_cost", finite_or_null(run.least_cost)},
+               {"cost", solved ? Json(arm.cost()) : Json(nullptr)},
+               {"summary", summary_json(run, arm.rows())},
+               {"lattice", lattice_json(run.lattice, solved)}};
+  add_measures(json, run, solved);
+  json["counters"] = counters_json(arm.counters);
+  json["diagnosis"] = run.diagnosis ? diagnosis_json(*run.diagnosis) : Json(nullptr);
+  json["trajectory"] = solved ? trajectory_json(arm.rows()) : Json(nullptr);
+  json["partial"] = trajectory_json(arm.partial.empty() ? std::vector<TrajectoryRow>()
+                                                        : arm.partial.front().rows);
+  json["robot_pairs"] = robot_pairs_json(arm.dropped_pairs, arm.reduced_pairs);
+  json["held"] = held_json(arm.held);
+  json["warnings"] = arm.warnings;
+  json["joint_names"] = arm.joint_names;
   return json;
 }
 
@@ -52,7 +51,7 @@ Json refinement_of_both(const RefinedWorkcell& refined, const std::array<std::st
 }
 
 /// Returns the motion of both arms: what they have together, and the measures of each.
-Json workcell_motion_json(const WorkcellExtras& extras, const WorkcellResult& result) {
+Json workcell_motion_json(const WorkcellExtras& extras, const Answer& result) {
   const WorkcellTiming* timed = extras.motion;
   if (timed == nullptr && !extras.stopped) return nullptr;
   const TimingOptions& asked = extras.timing;
@@ -66,7 +65,7 @@ Json workcell_motion_json(const WorkcellExtras& extras, const WorkcellResult& re
                {"chord", or_null(asked.chord)}};
   if (timed != nullptr && timed->failure) {
     json["reason"] = timed->failure->reason;
-    json["arm"] = result.names[timed->failed_arm];
+    json["arm"] = result.arms[timed->failed_arm].name;
     json["at_s"] = timed->failure->s;
   }
   if (timed == nullptr || !timed->motion) return json;
@@ -106,8 +105,8 @@ Json advice_on_workcell(const AdviceOnWorkcell& all) {
 
 }  // namespace
 
-std::string to_workcell_json(const WorkcellResult& result, const WorkcellExtras& extras) {
-  const bool solved = !result.arms[0].trajectory.empty();
+std::string to_workcell_json(const Answer& result, const WorkcellExtras& extras) {
+  const bool solved = result.has_rows();
   Json json;
   json["schema_version"] = kResultVersion;
   json["status"] = to_string(result.status);
@@ -116,29 +115,30 @@ std::string to_workcell_json(const WorkcellResult& result, const WorkcellExtras&
   json["checked"] = solved ? Json(result.checked) : Json(nullptr);
   json["planner"] = result.planner;
   json["threads"] = result.threads;
-  json["decided_by"] = to_string(result.decided_by);
-  json["arms"] = {arm_json(result, 0), arm_json(result, 1)};
-  json["refinement"] =
-      extras.refinement ? refinement_of_both(*extras.refinement, result.names) : Json(nullptr);
+  json["decided_by"] = to_string(result.pair.decided_by);
+  json["arms"] = {arm_json(result.arms[0]), arm_json(result.arms[1])};
+  json["refinement"] = extras.refinement
+                           ? refinement_of_both(*extras.refinement, names_of_arms(result))
+                           : Json(nullptr);
   json["motion"] = workcell_motion_json(extras, result);
   json["conflict"] = nullptr;
-  if (const auto& conflict = result.conflict)
+  if (const auto& conflict = result.pair.conflict)
     json["conflict"] = {{"layer", conflict->layer},
                         {"on_motion", conflict->of_motion},
                         {"s", conflict->s},
                         {"bodies", conflict->bodies}};
   json["advice"] = extras.advice ? advice_on_workcell(*extras.advice) : Json(nullptr);
   json["between_arms"] = nullptr;
-  if (const auto& nearest = result.between_arms)
+  if (const auto& nearest = result.pair.nearest)
     json["between_arms"] = {{"clearance_mm", 1e3 * nearest->clearance},
                             {"margin_mm", 1e3 * nearest->margin},
                             {"bodies", nearest->bodies},
                             {"row", nearest->row}};
-  json["between_arms_status"] = to_string(result.between_arms_status());
-  json["counters"] = {{"rounds", result.counters.rounds},
-                      {"pops", result.counters.pops},
-                      {"node_pairs", result.counters.node_pairs},
-                      {"move_pairs", result.counters.move_pairs}};
+  json["between_arms_status"] = to_string(result.pair.nearest_status());
+  json["counters"] = {{"rounds", result.pair.counters.rounds},
+                      {"pops", result.pair.counters.pops},
+                      {"node_pairs", result.pair.counters.node_pairs},
+                      {"move_pairs", result.pair.counters.move_pairs}};
   json["time_ms"] = time_json(result.time_ms);
   json["warnings"] = result.warnings;
   return document_of(json);

@@ -4,6 +4,7 @@
 #include "files/csv.hpp"
 #include "motions/given_rows.hpp"
 #include "motions/messages.hpp"
+#include "motions/trajectory_columns.hpp"
 #include "swivel/io/workcells/workcell_csv.hpp"
 
 namespace swivel::io {
@@ -37,10 +38,10 @@ std::string fields_of(const std::array<const TrajectoryRow*, 2>& rows) {
 
 }  // namespace
 
-std::string to_workcell_csv(const WorkcellResult& result) {
-  std::string text = header_line(workcell_columns(
-      arms_of_workcell(result.names, {result.arms[0].joint_names, result.arms[1].joint_names})));
-  const auto &first = result.arms[0].trajectory, &second = result.arms[1].trajectory;
+std::string two_arms_csv(const Answer& result) {
+  std::string text = header_line(
+      workcell_columns(arms_of_workcell(names_of_arms(result), joint_names_of_arms(result))));
+  const auto &first = result.arms[0].rows(), &second = result.arms[1].rows();
   for (std::size_t k = 0; k < first.size(); ++k) text += fields_of({&first[k], &second[k]}) + '\n';
   return text;
 }

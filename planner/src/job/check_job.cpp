@@ -26,7 +26,7 @@ constexpr std::size_t kMostLines = 20;  // of failures
 class JobCheck {
  public:
   /// Prepares the check of a job's parts; `timed` holds their rows with times, or is null.
-  JobCheck(const PreparedRobot& robot, const Problem& job, const std::vector<JobPart>& parts,
+  JobCheck(const PreparedRobot& robot, const Problem& job, const std::vector<Part>& parts,
            const CheckOptions& options, const std::vector<std::vector<TimedRow>>* timed = nullptr)
       : robot_(robot),
         chain_(robot.arm().chain),
@@ -241,7 +241,7 @@ class JobCheck {
   const PreparedRobot& robot_;
   const Chain& chain_;
   const Problem& job_;
-  const std::vector<JobPart>& parts_;
+  const std::vector<Part>& parts_;
   const std::vector<std::vector<TimedRow>>* timed_;  // by part
   const CheckOptions& options_;
   double margin_;  // rad, of transitions
@@ -254,7 +254,7 @@ class JobCheck {
 }  // namespace
 
 JobCheckResult check_job(const PreparedRobot& robot, const Problem& job,
-                         const std::vector<JobPart>& parts, const CheckOptions& options) {
+                         const std::vector<Part>& parts, const CheckOptions& options) {
   validate(job);
   robot.require_prepared_for(problem_of_run(job, {0, false}));
   return JobCheck(robot, job, parts, options).run();
@@ -300,7 +300,7 @@ JobCheckResult check_job_motion(const PreparedRobot& robot, const Problem& given
   robot.require_prepared_for(problem_of_run(given, {0, false}));
   const Problem job = with_motion_defaults(given);
   const std::size_t count = job.arm().home ? 2 * order.size() + 1 : 2 * order.size() - 1;
-  std::vector<JobPart> parts(count);
+  std::vector<Part> parts(count);
   std::vector<std::vector<TimedRow>> timed(count);
   for (std::size_t k = 0; k < order.size(); ++k)
     parts[job.arm().home ? 2 * k + 1 : 2 * k].run = order[k];
@@ -322,7 +322,7 @@ JobCheckResult check_job_motion(const PreparedRobot& robot, const Problem& given
   return result;
 }
 
-void check_process(const Problem& job, const std::vector<JobPart>& parts,
+void check_process(const Problem& job, const std::vector<Part>& parts,
                    const std::vector<std::vector<bool>>& process, JobCheckResult& result) {
   if (process.size() != parts.size())
     throw InvalidArgument(formatted("process: of %zu parts: allowed is one item for each of %zu",

@@ -104,11 +104,11 @@ std::vector<TrajectoryRow> corners_of(const std::vector<TrajectoryRow>& rows) {
 
 }  // namespace
 
-std::vector<JobPart> complete_parts(const PreparedRobot& robot, const Problem& job,
-                                    std::vector<JobPart> parts, const Stated& stated,
-                                    const Budget& budget) {
+std::vector<Part> complete_parts(const PreparedRobot& robot, const Problem& job,
+                                 std::vector<Part> parts, const Stated& stated,
+                                 const Budget& budget) {
   if (stated.rows()) return parts;
-  for (JobPart& part : parts)
+  for (Part& part : parts)
     if (part.run)
       part.rows = in_the_name_of(job, *part.run, [&](const PathProblem& problem) {
         return complete_rows(robot, problem, std::move(part.rows), stated, budget);
@@ -172,13 +172,13 @@ JobMotion complete_job_motion(const PreparedRobot& robot, const Problem& job,
   return motion;
 }
 
-std::vector<JobPart> parts_of_motion(const PreparedRobot& robot, const Problem& job,
-                                     const std::vector<StrokeRun>& order, const JobMotion& motion,
-                                     const Budget& budget) {
+std::vector<Part> parts_of_motion(const PreparedRobot& robot, const Problem& job,
+                                  const std::vector<StrokeRun>& order, const JobMotion& motion,
+                                  const Budget& budget) {
   const Problem completed = with_motion_defaults(job);
-  std::vector<JobPart> parts;
+  std::vector<Part> parts;
   for (const Range& range : ranges_of(motion)) {
-    JobPart& part = parts.emplace_back();
+    Part& part = parts.emplace_back();
     for (std::size_t k = range.begin; k < range.end; ++k) part.rows.push_back(motion.rows[k].row);
     part.run = run_of_part(job, order, parts.size() - 1);
     if (part.run)

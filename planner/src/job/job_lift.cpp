@@ -35,10 +35,10 @@ void note_other_turn(const Lattice& lattice, const Config& q, const Config& want
 
 }  // namespace
 
-Lattice::Joints lift(std::vector<JobPart>& parts, const Lattice& lattice, const Problem& job) {
+Lattice::Joints lift(std::vector<Part>& parts, const Lattice& lattice, const Problem& job) {
   Lattice::Joints off{};
   std::optional<Config> end = job.arm().home;
-  for (JobPart& part : parts) {
+  for (Part& part : parts) {
     // the run itself leaves the limits, whatever its turn
     if (part.rows.empty()) return bounded_circles(lattice);
     Config last = part.rows.front().q;

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "swivel/core/answer/job_result.hpp"
+#include "swivel/core/answer/answer.hpp"
 #include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/problem/problem.hpp"
 
@@ -14,7 +14,7 @@ namespace swivel {
 /// A job begins at `home`, if given, else where its first run does. Returns which bounded joints
 /// then leave their limits, do not come back to `home`, or are not at the given end of a stroke
 /// (Stroke::end); the parts mean nothing if there are any.
-[[nodiscard]] Lattice::Joints lift(std::vector<JobPart>& parts, const Lattice& lattice,
+[[nodiscard]] Lattice::Joints lift(std::vector<Part>& parts, const Lattice& lattice,
                                    const Problem& job);
 
 }  // namespace swivel

@@ -203,23 +203,23 @@ class JobPlan {
 
   /// Searches for a job that costs less than `most_cost` and proves it. The result has no parts
   /// where there is none, or where time ended its proof; finish() completes it.
-  const JobResult& search(double most_cost) {
+  const Answer& search(double most_cost) {
     const TraceSpan span("plan job");
     most_cost_ = most_cost;
     result_.planner = to_string(options_.planner);
     result_.threads = executor_.threads();
-    result_.joint_names = chain_.joint_names;
-    result_.held = robot_.arm().held;
+    result_.arm().joint_names = chain_.joint_names;
+    result_.arm().held = robot_.arm().held;
     try {
       Stopwatch watch;
       lay_out();
       result_.time_ms["lattice"] = watch.lap();
       find();
       result_.time_ms["find"] = watch.lap();
-      if (!result_.parts.empty())
+      if (!result_.arm().parts.empty())
         prove_answer(options_, budget_, result_, [&] {
           require_passed(
-              check_job(robot_, job_, result_.parts, {.margins = false, .budget = budget_}));
+              check_job(robot_, job_, result_.arm().parts, {.margins = false, .budget = budget_}));
         });
     } catch (const Stopped&) {
       stopped_ = true;
@@ -228,7 +228,7 @@ class JobPlan {
     return result_;
   }
   /// Measures the job that was found, or finds out why there is none, as far as time allows.
-  JobResult finish() {
+  Answer finish() {
     if (stopped_) return std::move(result_);
     try {
       Stopwatch watch;
@@ -292,8 +292,8 @@ class JobPlan {
     }
     add_lines(transition_world_->warnings(), result_.warnings);
     pairs.add(*transition_world_);
-    result_.dropped_pairs = std::move(pairs.dropped);
-    result_.reduced_pairs = std::move(pairs.reduced);
+    result_.arm().dropped_pairs = std::move(pairs.dropped);
+    result_.arm().reduced_pairs = std::move(pairs.reduced);
   }
 
   /// Searches until the joints of the cheapest job keep their limits without jumps of whole turns:
@@ -315,7 +315,7 @@ class JobPlan {
         if (!turns.empty()) result_.warnings.push_back(turns);
         return;
       }
-      std::vector<JobPart> parts = parts_of(outcome, transitions);
+      std::vector<Part> parts = parts_of(outcome, transitions);
       Lattice::Joints off = off_in_every_turn(parts, turns);
       if (off == Lattice::Joints{}) off = lift(parts, *runs_.front()->lattice, job_);
       if (off == Lattice::Joints{}) {
@@ -350,17 +350,17 @@ class JobPlan {
   }
   /// Makes parts the answer, with what their rows cost. Parts that a search which was stopped found
   /// are none; throws Stopped then.
-  void take(const JobOutcome& outcome, std::vector<JobPart> parts) {
+  void take(const JobOutcome& outcome, std::vector<Part> parts) {
     std::size_t k = 0;
-    for (JobPart& part : parts) {
+    for (Part& part : parts) {
       if (!part.run) continue;
-      result_.runs[k].lattice.cost = part.cost;
+      result_.arm().runs[k].lattice.cost = part.cost;
       part.cost = cost_of_rows(*runs_[k]->lattice, paths_[k], part.rows, part.cost);
-      result_.cost += part.cost - result_.runs[k].lattice.cost;
+      result_.cost += part.cost - result_.arm().runs[k].lattice.cost;
       ++k;
     }
     result_.status = PlanStatus::kSolved;
-    result_.parts = std::move(parts);
+    result_.arm().parts = std::move(parts);
     if (outcome.decided) return;
     withdraw(result_);
     throw Stopped();
@@ -384,11 +384,11 @@ class JobPlan {
   }
   /// Returns the circles that leave their limits along a run, whatever its turn; such runs have no
   /// rows. Puts turns_note() of the first into `note`, if that is empty.
-  [[nodiscard]] Lattice::Joints off_in_every_turn(const std::vector<JobPart>& parts,
+  [[nodiscard]] Lattice::Joints off_in_every_turn(const std::vector<Part>& parts,
                                                   std::string& note) const {
     Lattice::Joints off{};
     std::size_t k = 0;
-    for (const JobPart& part : parts) {
+    for (const Part& part : parts) {
       if (!part.run) continue;
       const auto& run = *runs_[k];
       const SlotPath& path = paths_[k++];
@@ -425,8 +425,9 @@ class JobPlan {
   bool home_is_barred(JobTransitions& transitions) {
     if (!job_.arm().home) return false;
     if (const auto bodies = transitions.barred(*job_.arm().home))
-      result_.no_transition = {.to = 0, .where = NoTransition::Where::kHome, .bodies = bodies};
-    return result_.no_transition.has_value();
+      result_.arm().no_transition = {
+          .to = 0, .where = NoTransition::Where::kHome, .bodies = bodies};
+    return result_.arm().no_transition.has_value();
   }
 
   JobOutcome search(JobTransitions& transitions) {
@@ -457,17 +458,17 @@ class JobPlan {
 
   /// Notes what a search did and found.
   void note(const JobOutcome& outcome, JobTransitions& transitions) {
-    result_.transitions.pairs += outcome.pairs;
-    result_.transitions.searches += outcome.searches;
-    result_.transitions.rounds += outcome.rounds;
+    result_.arm().transitions.pairs += outcome.pairs;
+    result_.arm().transitions.searches += outcome.searches;
+    result_.arm().transitions.rounds += outcome.rounds;
     for_each_direction([&](const std::shared_ptr<PlannedRun>& run) { add_counters(*run); });
     add_collision(transitions.counters());
     result_.bound = outcome.bound;
     result_.bound_any = outcome.bound_any;
     result_.cost = result_.lattice_cost = outcome.paths.empty() ? 0 : outcome.cost;
-    result_.runs.clear();
+    result_.arm().runs.clear();
     for (std::size_t k = 0; k < runs_.size(); ++k) {
-      RunResult run;
+      RunAnswer run;
       run.run = runs_[k]->run;
       run.lattice = info_of(*runs_[k]->lattice, robot_.arm_class());
       if (k < outcome.least_costs.size()) {
@@ -476,15 +477,15 @@ class JobPlan {
       } else {
         run.status = stopped_status(budget_);
       }
-      result_.runs.push_back(std::move(run));
+      result_.arm().runs.push_back(std::move(run));
     }
     note_no_transition(outcome, transitions);
     if (!outcome.decided && outcome.paths.empty()) throw Stopped();
   }
   void note_no_transition(const JobOutcome& outcome, JobTransitions& transitions) {
-    result_.no_transition.reset();
+    result_.arm().no_transition.reset();
     if (!outcome.transition_without_way) return;
-    NoTransition& none = result_.no_transition.emplace();
+    NoTransition& none = result_.arm().no_transition.emplace();
     none.to = *outcome.transition_without_way;
     if (outcome.barred_end) {
       none.where = NoTransition::Where::kEndBefore;
@@ -497,7 +498,7 @@ class JobPlan {
     }
   }
   void add_counters(const PlannedRun& run) {
-    Counters& sum = result_.counters;
+    Counters& sum = result_.arm().counters;
     sum.ik_nodes += run.cost_to_go->ik_nodes() - run.ik_nodes_before;
     sum.edges += run.cost_to_go->edges() - run.edges_before;
     sum.nodes_checked += run.validity->nodes_checked();
@@ -505,18 +506,18 @@ class JobPlan {
     add_collision(run.validity->counters());
   }
   void add_collision(const CollisionCounters& more) {
-    result_.counters.fcl_calls += more.fcl_calls;
-    result_.counters.proved_free += more.proved_free;
-    result_.counters.proved_colliding += more.proved_colliding;
+    result_.arm().counters.fcl_calls += more.fcl_calls;
+    result_.arm().counters.proved_free += more.proved_free;
+    result_.arm().counters.proved_colliding += more.proved_colliding;
   }
 
   /// Returns the parts of the job that was found, with joints as the lattices have them.
-  std::vector<JobPart> parts_of(const JobOutcome& outcome, JobTransitions& transitions) {
-    std::vector<JobPart> parts;
+  std::vector<Part> parts_of(const JobOutcome& outcome, JobTransitions& transitions) {
+    std::vector<Part> parts;
     std::optional<Config> end = job_.arm().home;
     std::size_t next_cost = 0;
     const auto add_transition = [&](std::size_t k, const Config& to) {
-      JobPart part;
+      Part part;
       part.cost = outcome.transition_costs[next_cost++];
       for (const Config& q : transitions.way(static_cast<int>(k), *end, to)) {
         TrajectoryRow row;
@@ -530,7 +531,7 @@ class JobPlan {
       const Lattice& lattice = *runs_[k]->lattice;
       const SlotPath& path = outcome.paths[k];
       if (end) add_transition(k, *lattice.exact_config(0, path.front()));
-      JobPart part;
+      Part part;
       part.run = runs_[k]->run;
       part.cost = outcome.run_costs[k];
       part.rows = lattice.path_rows(path);
@@ -546,7 +547,7 @@ class JobPlan {
 
   /// Moves the rolls of transitions, which may change as they like, so that they lead from that of
   /// the row before to that of the row behind: rows of runs count them from the waypoints.
-  static void join_rolls(std::vector<JobPart>& parts) {
+  static void join_rolls(std::vector<Part>& parts) {
     const auto roll_of_row = [](TrajectoryRow& row) -> double& { return row.q[kDof - 1]; };
     for (std::size_t k = 0; k < parts.size(); ++k) {
       std::vector<TrajectoryRow>& rows = parts[k].rows;
@@ -579,11 +580,11 @@ class JobPlan {
 
   /// Measures the runs of a job, or finds out why there is none.
   void explain() {
-    if (!result_.parts.empty()) {
+    if (!result_.arm().parts.empty()) {
       const auto each = [this](const auto& visit) {
         std::size_t k = 0;
-        for (const JobPart& part : result_.parts)
-          if (part.run) visit(part.rows, *runs_[k], result_.runs[k].measures), ++k;
+        for (const Part& part : result_.arm().parts)
+          if (part.run) visit(part.rows, *runs_[k], result_.arm().runs[k]), ++k;
       };
       each([&](const auto&, const PlannedRun& run, Measures& measures) {
         ask_for(options_.evidence, !run.world->allowed().empty(), measures);
@@ -594,8 +595,8 @@ class JobPlan {
       });
       return;
     }
-    for (std::size_t k = 0; k < result_.runs.size(); ++k)
-      if (result_.runs[k].status == PlanStatus::kInfeasible) {
+    for (std::size_t k = 0; k < result_.arm().runs.size(); ++k)
+      if (result_.arm().runs[k].status == PlanStatus::kInfeasible) {
         PlanOptions alone = options_;
         alone.check = false;
         alone.timeout_s = budget_.seconds_left();
@@ -603,9 +604,8 @@ class JobPlan {
         Planner planner(std::shared_ptr<const PreparedRobot>(std::shared_ptr<void>(), &robot_),
                         runs_[k]->problem);
         PlanResult found = planner.plan(alone);
-        const bool known = found.status == PlanStatus::kInfeasible;  // else the time was up
-        found.diagnosis.complete = known && found.diagnosis.complete;
-        result_.runs[k].diagnosis = std::move(found.diagnosis);
+        const bool known = found.status == PlanStatus::kInfeasible;
+        result_.arm().runs[k].diagnosis = diagnosis_alone(std::move(found));
         if (known) runs_[k]->alone_plan.emplace(std::move(planner));
       }
   }
@@ -627,7 +627,7 @@ class JobPlan {
   std::vector<std::shared_ptr<PlannedRun>> runs_;                     // the directions taken
   std::vector<StrokeRun> without_path_;
   std::vector<SlotPath> paths_;  // of the runs, empty where there is no job
-  JobResult result_;
+  Answer result_;
 };
 
 std::vector<StrokeRun> given_order(const Problem& job) {
@@ -657,7 +657,7 @@ class OrderSearch {
         view_(view),
         runs_(std::make_shared<JobRuns>(robot, job, budget)) {}
 
-  JobResult plan() {
+  Answer plan() {
     double order_ms = 0;
     if (job_.arm().order == StrokeOrder::kBest) {
       try {
@@ -671,9 +671,9 @@ class OrderSearch {
       }
     }
     if (!best_ || best_cost_ == kUnreachable) take(given_order(job_));
-    JobResult found = best_->finish();
-    found.counters = counters_;
-    found.transitions = transitions_;
+    Answer found = best_->finish();
+    found.arm().counters = counters_;
+    found.arm().transitions = transitions_;
     if (job_.arm().order == StrokeOrder::kBest) found.time_ms["order"] = order_ms;
     if (view_ != nullptr) view_->runs = best_->views(), view_->owner = best_;
     return found;
@@ -691,14 +691,14 @@ class OrderSearch {
   void take(const std::vector<StrokeRun>& order) {
     const auto plan = std::make_shared<JobPlan>(robot_, job_, options_, budget_, runs_,
                                                 strokes_of(order), one_branch_);
-    const JobResult& found = plan->search(best_cost_);
+    const Answer& found = plan->search(best_cost_);
     add(found);
-    if (!best_ || (!found.parts.empty() && found.lattice_cost < best_cost_)) {
+    if (!best_ || (!found.arm().parts.empty() && found.lattice_cost < best_cost_)) {
       best_ = plan;
       best_order_ = order;
-      if (!found.parts.empty()) {
+      if (!found.arm().parts.empty()) {
         best_cost_ = found.lattice_cost;
-        for (std::size_t k = 0; k < order.size(); ++k) best_order_[k] = found.runs[k].run;
+        for (std::size_t k = 0; k < order.size(); ++k) best_order_[k] = found.arm().runs[k].run;
       }
     }
     planned_.push_back(order);
@@ -718,11 +718,11 @@ class OrderSearch {
     }
   }
   /// Adds what one search did to what all did.
-  void add(const JobResult& found) {
-    add_counters(found.counters, counters_);
-    transitions_.pairs += found.transitions.pairs;
-    transitions_.searches += found.transitions.searches;
-    transitions_.rounds += found.transitions.rounds;
+  void add(const Answer& found) {
+    add_counters(found.arm().counters, counters_);
+    transitions_.pairs += found.arm().transitions.pairs;
+    transitions_.searches += found.arm().transitions.searches;
+    transitions_.rounds += found.arm().transitions.rounds;
   }
   [[nodiscard]] bool was_planned(const std::vector<StrokeRun>& order) const {
     return std::any_of(planned_.begin(), planned_.end(),
@@ -752,27 +752,28 @@ class OrderSearch {
   TransitionCounters transitions_;
 };
 
-JobResult plan_in_order(const PreparedRobot& robot, const Problem& job, const PlanOptions& options,
-                        const Budget& budget, JobView* view, bool one_branch = false) {
+Answer plan_in_order(const PreparedRobot& robot, const Problem& job, const PlanOptions& options,
+                     const Budget& budget, JobView* view, bool one_branch = false) {
   return OrderSearch(robot, job, options, budget, one_branch, view).plan();
 }
 
 /// Returns true if the rows of a run of the job are not all on one branch.
-bool any_changes_branch(const JobResult& job) {
-  return std::any_of(job.parts.begin(), job.parts.end(),
-                     [](const JobPart& part) { return part.run && changes_branch(part.rows); });
+bool any_changes_branch(const Answer& job) {
+  return std::any_of(job.arm().parts.begin(), job.arm().parts.end(),
+                     [](const Part& part) { return part.run && changes_branch(part.rows); });
 }
 
 /// Plans a job of which motions are to be made: the cheapest, or the cheapest whose runs do not
 /// change branch if the cheapest does and there is one.
-JobResult plan_executable(const PreparedRobot& robot, const Problem& job,
-                          const PlanOptions& options, const Budget& budget, JobView* view) {
-  JobResult found = plan_in_order(robot, job, options, budget, view);
-  if (found.parts.empty() || !robot.arm_class().srs || !any_changes_branch(found)) return found;
+Answer plan_executable(const PreparedRobot& robot, const Problem& job, const PlanOptions& options,
+                       const Budget& budget, JobView* view) {
+  Answer found = plan_in_order(robot, job, options, budget, view);
+  if (found.arm().parts.empty() || !robot.arm_class().srs || !any_changes_branch(found))
+    return found;
   JobView other_view;
-  JobResult other =
+  Answer other =
       plan_in_order(robot, job, options, budget, view == nullptr ? nullptr : &other_view, true);
-  if (other.parts.empty()) return found;
+  if (other.arm().parts.empty()) return found;
   if (view != nullptr) std::swap(*view, other_view);
   other.warnings.push_back(
       formatted("the cheapest job, of cost %.6g, jumps to another branch, which no controller can "
@@ -783,8 +784,8 @@ JobResult plan_executable(const PreparedRobot& robot, const Problem& job,
 
 }  // namespace
 
-JobResult plan_job(const PreparedRobot& robot, const Problem& job, const PlanOptions& options,
-                   JobView* view) {
+Answer plan_job(const PreparedRobot& robot, const Problem& job, const PlanOptions& options,
+                JobView* view) {
   validate(job);
   require_supported(options, "jobs");
   robot.require_prepared_for(problem_of_run(job, {0, false}));
@@ -795,7 +796,7 @@ JobResult plan_job(const PreparedRobot& robot, const Problem& job, const PlanOpt
                              });
 }
 
-JobResult plan_job(const Problem& job, const PlanOptions& options) {
+Answer plan_job(const Problem& job, const PlanOptions& options) {
   validate(job);
   require_supported(options, "jobs");
   return plan_job(PreparedRobot(problem_of_run(job, {0, false})), job, options);
@@ -815,15 +816,15 @@ JobMotionPlan plan_job_motion(const PreparedRobot& robot, const Problem& job,
                                     [&](const Problem& one, JobView* its_view) {
                                       return plan_executable(robot, one, options, budget, its_view);
                                     });
-  if (plan.result.parts.empty()) return plan;
-  const Problem executed = executed_job(completed, plan.result);
+  if (plan.result.arm().parts.empty()) return plan;
+  const Problem executed = executed_problem(completed, plan.result);
   try {
     Stopwatch watch;
-    plan.timing = time_job(robot, executed, plan.result.parts, timing, budget);
+    plan.timing = time_job(robot, executed, plan.result.arm().parts, timing, budget);
     plan.result.time_ms["time"] = watch.lap();
     if (options.check && plan.timing->motion) {
       std::vector<StrokeRun> order;
-      for (const RunResult& run : plan.result.runs) order.push_back(run.run);
+      for (const RunAnswer& run : plan.result.arm().runs) order.push_back(run.run);
       require_passed(check_job_motion(robot, executed, order, *plan.timing->motion,
                                       {.margins = false, .budget = budget, .speed = timing.speed}));
       plan.result.time_ms["check motion"] = watch.lap();

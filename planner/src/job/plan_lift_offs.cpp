@@ -34,13 +34,13 @@ class LiftPlan {
  public:
   LiftPlan(const PreparedRobot& robot, const Problem& job, const PlanOptions& options,
            const Budget& budget, JobView* view,
-           const std::function<JobResult(const Problem&, JobView*)>& plan)
+           const std::function<Answer(const Problem&, JobView*)>& plan)
       : robot_(robot), job_(job), options_(options), budget_(budget), view_(view), plan_(plan) {}
 
-  JobResult run() {
+  Answer run() {
     uncut_ = std::make_shared<Problem>(job_);
     uncut_->arm().lift.reset();
-    JobResult first = plan_(*uncut_, view_);
+    Answer first = plan_(*uncut_, view_);
     keep(uncut_);
     const bool cut = std::any_of(job_.arm().strokes.begin(), job_.arm().strokes.end(),
                                  [](const Stroke& stroke) { return stroke.piece.has_value(); });
@@ -54,11 +54,11 @@ class LiftPlan {
     } catch (const Stopped&) {
       stopped = true;
     }
-    if (best_ && !best_->parts.empty()) return finish(std::move(first));
+    if (best_ && !best_->arm().parts.empty()) return finish(std::move(first));
     if (stopped || (best_ && best_->status != PlanStatus::kInfeasible)) {
       // Whether lift-offs suffice is not known.
       first.status = stopped_status(budget_);
-      first.runs.clear();
+      first.arm().runs.clear();
     }
     return first;
   }
@@ -73,8 +73,8 @@ class LiftPlan {
   }
   /// Finds the least number of lift-offs of each stroke that has no path by itself. Returns false,
   /// and says so in the result, where one cannot be done in any number of runs.
-  bool find_cuts(JobResult& first) {
-    for (const RunResult& run : first.runs) {
+  bool find_cuts(Answer& first) {
+    for (const RunAnswer& run : first.arm().runs) {
       if (run.status != PlanStatus::kInfeasible) continue;
       CutStroke& stroke = strokes_.emplace_back();
       stroke.search = std::make_unique<LiftSearch>(
@@ -102,15 +102,15 @@ class LiftPlan {
     return all;
   }
   /// Plans the job with the places chosen now, and keeps it if it is the best so far.
-  JobResult evaluate() {
+  Answer evaluate() {
     const std::vector<LiftOff> places = lift_offs();
     const auto job = std::make_shared<Problem>(with_lift_offs(job_, places));
     JobView view;
-    JobResult found = plan_(*job, view_ == nullptr ? nullptr : &view);
-    add_counters(found.counters, counters_);
+    Answer found = plan_(*job, view_ == nullptr ? nullptr : &view);
+    add_counters(found.arm().counters, counters_);
     const bool better =
-        !best_ || (!found.parts.empty() &&
-                   (best_->parts.empty() || found.lattice_cost < best_->lattice_cost));
+        !best_ || (!found.arm().parts.empty() &&
+                   (best_->arm().parts.empty() || found.lattice_cost < best_->lattice_cost));
     if (better) {
       best_ = found;
       best_lift_offs_ = places;
@@ -131,9 +131,9 @@ class LiftPlan {
     double least = std::numeric_limits<double>::infinity();
     int failures = 0;
     for (int k = 0; k < kMostTries; ++k) {
-      const JobResult found = evaluate();
+      const Answer found = evaluate();
       const std::vector<std::size_t> faults = faults_of(found, stroke);
-      if (found.parts.empty()) {
+      if (found.arm().parts.empty()) {
         ++failures;
       } else {
         const double cost = found.lattice_cost;
@@ -143,7 +143,7 @@ class LiftPlan {
       if (faults.empty() || found.status == PlanStatus::kTimeout ||
           found.status == PlanStatus::kCancelled)
         break;
-      const int around = found.parts.empty() ? (1 << std::min(failures - 1, 6)) - 1 : 0;
+      const int around = found.arm().parts.empty() ? (1 << std::min(failures - 1, 6)) - 1 : 0;
       for (const std::size_t fault : faults) stroke.search->leave_out(fault, around);
       const auto next = stroke.search->next(stroke.count);
       if (!next || (rest && *rest + next->cost >= least)) break;
@@ -154,7 +154,7 @@ class LiftPlan {
 
   /// Returns the numbers of a stroke's lift-offs, from 0, beside which a run has no path or a
   /// transition has none or is a detour.
-  [[nodiscard]] std::vector<std::size_t> faults_of(const JobResult& found,
+  [[nodiscard]] std::vector<std::size_t> faults_of(const Answer& found,
                                                    const CutStroke& stroke) const {
     std::set<std::size_t> faults;
     const Problem job = with_lift_offs(job_, lift_offs());
@@ -171,60 +171,61 @@ class LiftPlan {
         ++before;
       return before;
     };
-    for (std::size_t run = 0; run < found.runs.size(); ++run)
-      if (const auto k = number(run); k && found.runs[run].status == PlanStatus::kInfeasible) {
+    for (std::size_t run = 0; run < found.arm().runs.size(); ++run)
+      if (const auto k = number(run);
+          k && found.arm().runs[run].status == PlanStatus::kInfeasible) {
         if (*k > 0) faults.insert(*k - 1);
         if (*k < count) faults.insert(*k);
       }
-    if (found.no_transition)
-      if (const auto k = number(found.no_transition->to); k && *k > 0) faults.insert(*k - 1);
-    for (std::size_t part = 1; part + 1 < found.parts.size(); ++part) {
-      if (found.parts[part].run || found.parts[part].rows.size() <= 2) continue;
-      const auto k = number(found.parts[part + 1].run->stroke);
+    if (found.arm().no_transition)
+      if (const auto k = number(found.arm().no_transition->to); k && *k > 0) faults.insert(*k - 1);
+    for (std::size_t part = 1; part + 1 < found.arm().parts.size(); ++part) {
+      if (found.arm().parts[part].run || found.arm().parts[part].rows.size() <= 2) continue;
+      const auto k = number(found.arm().parts[part + 1].run->stroke);
       if (k && *k > 0) faults.insert(*k - 1);
     }
     return {faults.begin(), faults.end()};
   }
   /// Returns by how much the transitions of a stroke's lift-offs are dearer than straight ones.
-  [[nodiscard]] double detours(const JobResult& found, const CutStroke& stroke) const {
+  [[nodiscard]] double detours(const Answer& found, const CutStroke& stroke) const {
     const Problem job = with_lift_offs(job_, lift_offs());
     const std::string& name = job_.arm().strokes[stroke.places.lift_offs.front().stroke].name;
     double sum = 0;
-    for (std::size_t part = 1; part + 1 < found.parts.size(); ++part) {
-      if (found.parts[part].run) continue;
-      const auto &before = job.arm().strokes[found.parts[part - 1].run->stroke].piece,
-                 &after = job.arm().strokes[found.parts[part + 1].run->stroke].piece;
+    for (std::size_t part = 1; part + 1 < found.arm().parts.size(); ++part) {
+      if (found.arm().parts[part].run) continue;
+      const auto &before = job.arm().strokes[found.arm().parts[part - 1].run->stroke].piece,
+                 &after = job.arm().strokes[found.arm().parts[part + 1].run->stroke].piece;
       if (!before || !after || before->stroke != name || after->stroke != name) continue;
-      const std::vector<TrajectoryRow>& rows = found.parts[part].rows;
-      sum += found.parts[part].cost - stroke.search->distance(rows.front().q, rows.back().q);
+      const std::vector<TrajectoryRow>& rows = found.arm().parts[part].rows;
+      sum += found.arm().parts[part].cost - stroke.search->distance(rows.front().q, rows.back().q);
     }
     return sum;
   }
 
   /// Returns the best job with what its lift-offs cost and why each is there.
-  JobResult finish(JobResult first) {
-    JobResult found = std::move(*best_);
+  Answer finish(Answer first) {
+    Answer found = std::move(*best_);
     const double cost = static_cast<double>(best_lift_offs_.size()) * job_.arm().lift->cost;
     found.cost += cost;
     found.lattice_cost += cost;
     found.bound += cost;
     found.bound_any += cost;
-    found.counters = first.counters;
-    add_counters(counters_, found.counters);
+    found.arm().counters = first.arm().counters;
+    add_counters(counters_, found.arm().counters);
     if (const auto lift = first.time_ms.find("lift"); lift != first.time_ms.end())
       found.time_ms["lift"] = lift->second;
     for (std::size_t k = 0; k < best_lift_offs_.size(); ++k)
-      found.lift_offs.push_back(explained(k, first));
+      found.arm().lift_offs.push_back(explained(k, first));
     return found;
   }
   /// Returns lift-off number k of the answer with what ends the run before it, were it longer.
-  [[nodiscard]] LiftOffResult explained(std::size_t k, const JobResult& first) const {
-    LiftOffResult lift{best_lift_offs_[k], 0, {}};
+  [[nodiscard]] LiftOffAnswer explained(std::size_t k, const Answer& first) const {
+    LiftOffAnswer lift{best_lift_offs_[k], 0, {}};
     const bool first_of_stroke = k == 0 || best_lift_offs_[k - 1].stroke != lift.stroke;
     const double begin = first_of_stroke ? 0 : best_lift_offs_[k - 1].resumed;
     std::optional<Diagnosis> diagnosis;
     if (first_of_stroke) {
-      for (const RunResult& run : first.runs)
+      for (const RunAnswer& run : first.arm().runs)
         if (run.run.stroke == lift.stroke) diagnosis = run.diagnosis;
     } else {
       diagnosis = diagnosis_after(k - 1);
@@ -258,19 +259,19 @@ class LiftPlan {
   const PlanOptions& options_;
   const Budget& budget_;
   JobView* view_;
-  const std::function<JobResult(const Problem&, JobView*)>& plan_;
+  const std::function<Answer(const Problem&, JobView*)>& plan_;
   std::shared_ptr<Problem> uncut_;
   std::vector<CutStroke> strokes_;
-  std::optional<JobResult> best_;
+  std::optional<Answer> best_;
   std::vector<LiftOff> best_lift_offs_;
   Counters counters_;  // of all jobs with lift-offs
 };
 
 }  // namespace
 
-JobResult plan_with_lift_offs(const PreparedRobot& robot, const Problem& job,
-                              const PlanOptions& options, const Budget& budget, JobView* view,
-                              const std::function<JobResult(const Problem&, JobView*)>& plan) {
+Answer plan_with_lift_offs(const PreparedRobot& robot, const Problem& job,
+                           const PlanOptions& options, const Budget& budget, JobView* view,
+                           const std::function<Answer(const Problem&, JobView*)>& plan) {
   if (!job.arm().lift) return plan(job, view);
   return LiftPlan(robot, job, options, budget, view, plan).run();
 }

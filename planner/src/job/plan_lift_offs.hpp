@@ -2,7 +2,7 @@
 #pragma once
 #include <functional>
 
-#include "swivel/core/answer/job_result.hpp"
+#include "swivel/core/answer/answer.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/problem/problem.hpp"
 #include "swivel/planner/job/job_view.hpp"
@@ -15,9 +15,9 @@ class PreparedRobot;
 /// Plans a job by `plan`; where Problem::lift allows it and strokes have no path by themselves,
 /// with the least number of lift-offs of these strokes, at the cheapest places found. `plan` gets a
 /// job without strokes to be cut, and a view to fill or null.
-[[nodiscard]] JobResult plan_with_lift_offs(
+[[nodiscard]] Answer plan_with_lift_offs(
     const PreparedRobot& robot, const Problem& job, const PlanOptions& options,
     const Budget& budget, JobView* view,
-    const std::function<JobResult(const Problem&, JobView*)>& plan);
+    const std::function<Answer(const Problem&, JobView*)>& plan);
 
 }  // namespace swivel

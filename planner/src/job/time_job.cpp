@@ -33,7 +33,7 @@ RunSpeeds required_speeds(const Problem& job, const StrokeRun& run, const PathPr
 /// Joins timed parts to one motion.
 class JobTimer {
  public:
-  JobTimer(const PreparedRobot& robot, const Problem& job, const std::vector<JobPart>& parts,
+  JobTimer(const PreparedRobot& robot, const Problem& job, const std::vector<Part>& parts,
            const JobTimingOptions& options, const Budget& budget)
       : robot_(robot),
         chain_(robot.arm().chain),
@@ -142,7 +142,7 @@ class JobTimer {
   const PreparedRobot& robot_;
   const Chain& chain_;
   const Problem& job_;
-  const std::vector<JobPart>& parts_;
+  const std::vector<Part>& parts_;
   const JobTimingOptions& options_;
   const Budget& budget_;
   JointRates rates_;
@@ -162,7 +162,7 @@ void require_speeds(const Problem& job, const JobTimingOptions& options) {
 }
 
 JobTimingResult time_job(const PreparedRobot& robot, const Problem& job,
-                         const std::vector<JobPart>& parts, const JobTimingOptions& options,
+                         const std::vector<Part>& parts, const JobTimingOptions& options,
                          const Budget& budget) {
   const TraceSpan span("time job");
   validate(job);

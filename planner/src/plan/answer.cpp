@@ -19,10 +19,6 @@ void append(const std::vector<std::string>& lines, std::vector<std::string>& all
   all.insert(all.end(), lines.begin(), lines.end());
 }
 
-void withdraw(std::vector<TrajectoryRow>& rows, std::vector<TrajectoryRow>& partial) {
-  partial = std::exchange(rows, {});
-}
-
 }  // namespace
 
 PlanStatus stopped_status(const Budget& budget) {
@@ -30,15 +26,18 @@ PlanStatus stopped_status(const Budget& budget) {
 }
 
 void withdraw(PlanResult& result) {
-  withdraw(result.trajectory, result.partial);
+  result.partial = std::exchange(result.trajectory, {});
 }
 
-void withdraw(JobResult& result) {
-  result.partial = std::exchange(result.parts, {});
+void withdraw(Answer& answer) {
+  for (ArmAnswer& arm : answer.arms) arm.partial = std::exchange(arm.parts, {});
 }
 
-void withdraw(WorkcellResult& result) {
-  for (PlanResult& arm : result.arms) withdraw(arm);
+Diagnosis diagnosis_alone(PlanResult plan) {
+  if (plan.diagnosis) return *std::move(plan.diagnosis);
+  Diagnosis unknown;
+  unknown.complete = false;
+  return unknown;
 }
 
 LatticeInfo info_of(const Lattice& lattice, const ArmClass& arm) {

@@ -6,9 +6,8 @@
 
 #include "plan/stopwatch.hpp"
 #include "swivel/collision/world/world.hpp"
-#include "swivel/core/answer/job_result.hpp"
+#include "swivel/core/answer/answer.hpp"
 #include "swivel/core/answer/plan.hpp"
-#include "swivel/core/answer/workcell_result.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/lattice/lattice.hpp"
@@ -21,11 +20,9 @@ namespace swivel {
 /// Returns the status of a plan that this budget ended: cancelled, or timed out.
 [[nodiscard]] PlanStatus stopped_status(const Budget& budget);
 
-/// Moves what is not proved to `partial`: the trajectory of a path, the parts of a job, the
-/// trajectories of two arms.
+/// Moves what is not proved to `partial`: the trajectory of a path, the parts of all arms.
 void withdraw(PlanResult& result);
-void withdraw(JobResult& result);
-void withdraw(WorkcellResult& result);
+void withdraw(Answer& answer);
 
 /// Proves an answer: the only way by which one leaves a planner whose options ask for proofs.
 /// `prove` proves all of it within the budget, or throws std::logic_error. Where the budget ends
@@ -46,6 +43,10 @@ void prove_answer(const PlanOptions& options, const Budget& budget, Result& resu
   result.checked = true;
   result.time_ms["check"] += watch.lap();
 }
+
+/// Returns why a run has no path from the plan of the run by itself. Where time was up before that
+/// had its verdict, the diagnosis knows nothing and is not complete.
+[[nodiscard]] Diagnosis diagnosis_alone(PlanResult plan);
 
 /// Returns what a lattice is like, with how the solutions of its arm are found.
 [[nodiscard]] LatticeInfo info_of(const Lattice& lattice, const ArmClass& arm);

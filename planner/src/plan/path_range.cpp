@@ -59,7 +59,8 @@ PathReach reach_from(const PreparedRobot& robot, const PathProblem& problem, dou
   reach.plan = plan(robot, ahead, options);
   const std::vector<TrajectoryRow>& rows =
       reach.plan.status == PlanStatus::kSolved ? reach.plan.trajectory : reach.plan.partial;
-  double along = reach.plan.diagnosis.reached_s.value_or(0);
+  const auto& diagnosis = reach.plan.diagnosis;
+  double along = diagnosis ? diagnosis->reached_s.value_or(0) : 0;
   if (!rows.empty()) along = std::max(along, rows.back().s);
   from = std::min(from, length_of(problem.waypoints));
   reach.s = backwards ? from - along : from + along;

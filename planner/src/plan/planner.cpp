@@ -477,7 +477,8 @@ struct Planner::Impl {
                      result);
         return;
       }
-      result.diagnosis.complete = false;  // until diagnose() has finished
+      Diagnosis& diagnosis = result.diagnosis.emplace();
+      diagnosis.complete = false;  // until diagnose() has finished
       if (lattice.is_closed() && found.deepest == lattice.layers() - 1) {
         explain_open(rule, found, options, budget, result);
         return;
@@ -487,7 +488,7 @@ struct Planner::Impl {
         path = best_path_to(lattice, *world, rule, *found.deepest, budget, options.hooks);
       result.partial = partial_rows(lattice, path);
       if (!found.deepest) return;
-      diagnose(lattice, *world, rule, path, options.evidence.layers, budget, result.diagnosis,
+      diagnose(lattice, *world, rule, path, options.evidence.layers, budget, diagnosis,
                options.hooks.check);
       result.evidence.layers = options.evidence.layers;
     } catch (const Stopped&) {
@@ -500,11 +501,12 @@ struct Planner::Impl {
     if (was_eager)
       path = best_path_to(lattice, *world, rule, *found.deepest, budget, options.hooks);
     result.partial = partial_rows(lattice, path);
-    result.diagnosis.cause.kind = Cause::Kind::kNotClosed;
-    result.diagnosis.reached_layer = *found.deepest;
-    result.diagnosis.reached_s = lattice.path().layer(*found.deepest).s;
-    result.diagnosis.layers_known = lattice.layers();
-    result.diagnosis.complete = true;
+    Diagnosis& diagnosis = *result.diagnosis;
+    diagnosis.cause.kind = Cause::Kind::kNotClosed;
+    diagnosis.reached_layer = *found.deepest;
+    diagnosis.reached_s = lattice.path().layer(*found.deepest).s;
+    diagnosis.layers_known = lattice.layers();
+    diagnosis.complete = true;
   }
   PlanResult plan(const PlanOptions& options) {
     const TraceSpan span("plan");

@@ -34,8 +34,8 @@ class Adviser {
 
   std::vector<Advice> run() {
     if (result_.status != PlanStatus::kInfeasible) return {};
-    by_cause(result_.diagnosis.cause);
-    for (const Cause& cause : result_.diagnosis.together) by_cause(cause);
+    by_cause(result_.diagnosis->cause);
+    for (const Cause& cause : result_.diagnosis->together) by_cause(cause);
     free_given();
     free_roll();
     finer();
@@ -158,7 +158,7 @@ class Adviser {
       try_once({.change = Change::kFreeRoll});
   }
   void finer() {
-    if (result_.diagnosis.holds() != Diagnosis::Holds::kEveryResolution)
+    if (result_.diagnosis->holds() != Diagnosis::Holds::kEveryResolution)
       try_once({.change = Change::kFiner});
   }
 
@@ -209,9 +209,10 @@ class Adviser {
       advice.outcome = Outcome::kSolved;
       advice.cost = found.cost;
     } else if (found.status == PlanStatus::kInfeasible) {
-      last_cause_ = found.diagnosis.cause;
-      advice.reached_s = found.diagnosis.reached_s;
-      const double before = result_.diagnosis.reached_s.value_or(-1), step = problem_.resolution.ds;
+      last_cause_ = found.diagnosis->cause;
+      advice.reached_s = found.diagnosis->reached_s;
+      const double before = result_.diagnosis->reached_s.value_or(-1),
+                   step = problem_.resolution.ds;
       advice.outcome = advice.reached_s.value_or(-1) > before + step * (1 + 1e-9)
                            ? Outcome::kFurther
                            : Outcome::kNoHelp;
@@ -319,8 +320,8 @@ class Adviser {
       plan_changed(one);
       return {one.object, object_of(last_cause_, one.object)};
     }
-    std::string first = object_of(result_.diagnosis.cause), second;
-    for (const Cause& cause : result_.diagnosis.together)
+    std::string first = object_of(result_.diagnosis->cause), second;
+    for (const Cause& cause : result_.diagnosis->together)
       if (first.empty())
         first = object_of(cause);
       else if (second.empty())

@@ -21,7 +21,7 @@ constexpr double kLengths[] = {0.02, 0.05, 0.1};  // of lines that are tried, m
 /// Plans changed jobs within one time-out.
 class JobTrials {
  public:
-  JobTrials(const PreparedRobot& robot, const Problem& job, const JobResult& result,
+  JobTrials(const PreparedRobot& robot, const Problem& job, const Answer& result,
             const PlanOptions& options)
       : robot_(robot),
         job_(job),
@@ -36,12 +36,12 @@ class JobTrials {
 
   AdviceOnJob advise() {
     std::vector<std::size_t> without;
-    for (const RunResult& run : result_.runs)
+    for (const RunAnswer& run : result_.arm().runs)
       if (run.status == PlanStatus::kInfeasible) without.push_back(run.run.stroke);
     if (!without.empty())
       advise_on_strokes(without);
-    else if (result_.no_transition)
-      advise_on_transition(*result_.no_transition);
+    else if (result_.arm().no_transition)
+      advise_on_transition(*result_.arm().no_transition);
     std::stable_sort(advice_.job.begin(), advice_.job.end(),
                      [](const JobAdvice& a, const JobAdvice& b) { return a.outcome < b.outcome; });
     return std::move(advice_);
@@ -71,21 +71,23 @@ class JobTrials {
     }
   }
   [[nodiscard]] StrokeRun run_of(std::size_t stroke) const {
-    for (const RunResult& run : result_.runs)
+    for (const RunAnswer& run : result_.arm().runs)
       if (run.run.stroke == stroke) return run.run;
     return {stroke, false};
   }
 
   void advise_on_transition(const NoTransition& none) {
     using Where = NoTransition::Where;
-    const std::size_t runs = result_.runs.size();
+    const std::size_t runs = result_.arm().runs.size();
     const bool from_home = none.to == 0, to_home = none.to == runs;
     bool lengthened = none.where == Where::kHome;
     if (none.where == Where::kEndBefore || (none.where == Where::kBetween && !from_home))
-      lengthened = lengthen(JobAdvice::Change::kRetract, {result_.runs[none.to - 1].run.stroke});
+      lengthened =
+          lengthen(JobAdvice::Change::kRetract, {result_.arm().runs[none.to - 1].run.stroke});
     if (none.where == Where::kBegin || (none.where == Where::kBetween && !to_home))
       lengthened =
-          lengthen(JobAdvice::Change::kApproach, {result_.runs[none.to].run.stroke}) || lengthened;
+          lengthen(JobAdvice::Change::kApproach, {result_.arm().runs[none.to].run.stroke}) ||
+          lengthened;
     if (!lengthened) lengthen(JobAdvice::Change::kLines, all_strokes());
     if (none.where == Where::kHome || from_home || to_home) move_home();
     if (none.where == Where::kHome) return;
@@ -95,8 +97,8 @@ class JobTrials {
       add({.change = JobAdvice::Change::kBestOrder, .strokes = {}}, changed);
     }
     std::vector<std::size_t> beside;
-    if (!from_home) beside.push_back(result_.runs[none.to - 1].run.stroke);
-    if (!to_home) beside.push_back(result_.runs[none.to].run.stroke);
+    if (!from_home) beside.push_back(result_.arm().runs[none.to - 1].run.stroke);
+    if (!to_home) beside.push_back(result_.arm().runs[none.to].run.stroke);
     for (const std::size_t stroke : beside) reverse(stroke);
     for (const std::size_t stroke : beside) leave_out({stroke});
   }
@@ -108,8 +110,8 @@ class JobTrials {
       PlanOptions options = options_;
       options.timeout_s = seconds;
       try {
-        const JobResult found = plan_job(robot_, changed, options);
-        if (!found.parts.empty()) {
+        const Answer found = plan_job(robot_, changed, options);
+        if (!found.arm().parts.empty()) {
           advice.outcome = Advice::Outcome::kSolved;
           advice.cost = found.cost;
         } else if (found.status == PlanStatus::kInfeasible) {
@@ -139,10 +141,11 @@ class JobTrials {
   /// itself it has a path either way unless the lines of approach and retract differ.
   void reverse(std::size_t stroke) {
     const Stroke& of = job_.arm().strokes[stroke];
-    const bool alone = result_.runs.size() == 1 ||
-                       std::any_of(result_.runs.begin(), result_.runs.end(), [&](const auto& run) {
-                         return run.run.stroke == stroke && run.status == PlanStatus::kInfeasible;
-                       });
+    const bool alone =
+        result_.arm().runs.size() == 1 ||
+        std::any_of(result_.arm().runs.begin(), result_.arm().runs.end(), [&](const auto& run) {
+          return run.run.stroke == stroke && run.status == PlanStatus::kInfeasible;
+        });
     if (of.reversible || of.end || (alone && of.approach == of.retract)) return;
     Problem changed = job_;
     Stroke& turned = changed.arm().strokes[stroke];
@@ -194,9 +197,9 @@ class JobTrials {
     PlanOptions options = options_;
     options.timeout_s = seconds_left();
     if (*options.timeout_s > 0) {
-      const JobResult found = plan_job(robot_, changed, options);
-      if (!found.parts.empty()) {
-        Config home = found.parts.front().rows.front().q;
+      const Answer found = plan_job(robot_, changed, options);
+      if (!found.arm().parts.empty()) {
+        Config home = found.arm().parts.front().rows.front().q;
         for (double& joint : home) joint = std::round(1e4 * joint) / 1e4;
         changed.arm().home = advice.home = home;
         add(std::move(advice), changed);
@@ -209,7 +212,7 @@ class JobTrials {
 
   const PreparedRobot& robot_;
   const Problem& job_;
-  const JobResult& result_;
+  const Answer& result_;
   PlanOptions options_;
   Clock::time_point until_;
   AdviceOnJob advice_;
@@ -217,7 +220,7 @@ class JobTrials {
 
 }  // namespace
 
-AdviceOnJob advise_job(const PreparedRobot& robot, const Problem& job, const JobResult& result,
+AdviceOnJob advise_job(const PreparedRobot& robot, const Problem& job, const Answer& result,
                        PlanOptions options) {
   if (result.status != PlanStatus::kInfeasible) return {};
   return JobTrials(robot, job, result, options).advise();

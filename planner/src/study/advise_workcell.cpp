@@ -81,7 +81,7 @@ Problem changed_workcell(const Problem& cell, const WorkcellAdvice& advice) {
 /// Plans changed workcells within one time-out.
 class WorkcellTrials {
  public:
-  WorkcellTrials(const Problem& cell, const WorkcellResult& result, const PlanOptions& options)
+  WorkcellTrials(const Problem& cell, const Answer& result, const PlanOptions& options)
       : cell_(cell),
         options_(options),
         end_(Clock::now() +
@@ -91,7 +91,7 @@ class WorkcellTrials {
     options_.evidence = {};
     options_.progress = {};
     for (std::size_t k = 0; k < 2; ++k)
-      if (!std::isfinite(result.least_costs[k])) without_path_.push_back(k);
+      if (result.arms[k].run().status == PlanStatus::kInfeasible) without_path_.push_back(k);
   }
 
   AdviceOnWorkcell advise() {
@@ -304,7 +304,7 @@ class WorkcellTrials {
       PlanOptions options = options_;
       options.timeout_s = seconds_until(trial_end_);
       if (!prepared || !(*options.timeout_s > 0)) return;
-      const WorkcellResult found = decide_workcell(*prepared, options, options.budget());
+      const Answer found = decide_workcell(*prepared, options, options.budget());
       if (found.status == PlanStatus::kSolved) {
         advice.outcome = Outcome::kSolved;
         advice.cost = found.cost;
@@ -340,8 +340,7 @@ class WorkcellTrials {
 
 }  // namespace
 
-AdviceOnWorkcell advise_workcell(const Problem& cell, const WorkcellResult& result,
-                                 PlanOptions options) {
+AdviceOnWorkcell advise_workcell(const Problem& cell, const Answer& result, PlanOptions options) {
   require_supported(options, "workcells");
   if (result.status != PlanStatus::kInfeasible) return {};
   return WorkcellTrials(cell, result, options).advise();

@@ -13,15 +13,11 @@
 #include <utility>
 
 #include "measure/nearest_approach.hpp"
-#include "plan/supported_options.hpp"
-#include "study/answered.hpp"
-#include "study/studied_workcell.hpp"
+#include "study/study_planner.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
-#include "swivel/core/study/study_failure.hpp"
 #include "swivel/parallel/executor.hpp"
-#include "swivel/planner/job/plan_job.hpp"
 #include "swivel/planner/plan/plan_view.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 
@@ -91,9 +87,10 @@ class LeastMargins {
 
 namespace {
 
-/// The number of the object that is moved, where the path stays.
-std::optional<int> alone_moved(const PathProblem& problem, const Movable& thing) {
-  if (thing.kind != Movable::Kind::kObject || thing.object == problem.path_frame)
+/// Returns the number of the object that is moved, where there is one path, which stays.
+std::optional<int> alone_moved(const Problem& problem, const Movable& thing) {
+  if (!is_path(problem) || thing.kind != Movable::Kind::kObject ||
+      thing.object == problem.arm().path().path_frame)
     return std::nullopt;
   const auto found = std::find_if(problem.scene.begin(), problem.scene.end(),
                                   [&](const auto& o) { return o.name == thing.object; });
@@ -134,16 +131,33 @@ std::string place_of(const PlacementCell& cell) {
 
 }  // namespace
 
-/// What all placements share. Derived classes say how one is planned.
 struct PlacementPlanner::Impl {
+  /// What one thread plans with, and where its robot's joints are held.
+  struct Worker {
+    std::shared_ptr<const PreparedRobot> robot;  ///< null for two arms
+    Problem problem;
+    HeldPositions hold;
+    StudyPlanner planner;
+    LeastMargins margins;
+  };
+  Problem problem;
+  Movable thing;
   PlanOptions single;
   Executor executor;
+  std::vector<Worker> workers;
   std::optional<std::chrono::steady_clock::time_point> deadline;
   std::atomic<bool> stopped{false};
 
-  explicit Impl(const PlanOptions& options) : single(options), executor(options.threads) {
+  /// `robot`: as StudyPlanner takes it.
+  Impl(const std::shared_ptr<const PreparedRobot>& robot, Problem of, Movable moved,
+       const PlanOptions& options)
+      : problem(std::move(of)),
+        thing(std::move(moved)),
+        single(options),
+        executor(options.threads) {
     single.threads = 1;
-    single.evidence = {};
+    // The clearances of one path come from LeastMargins, which is faster.
+    single.evidence = {.postures = !is_path(problem)};
     single.hooks = {};
     single.progress = nullptr;
     constexpr double kFar = 1e9;  // s; what no clock can measure never passes
@@ -151,8 +165,28 @@ struct PlacementPlanner::Impl {
       deadline = std::chrono::steady_clock::now() +
                  std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                      std::chrono::duration<double>(*single.timeout_s));
+    validate(problem);
+    static_cast<void>(placed_problem(problem, thing, {}));
+    for (int worker = 0; worker < executor.threads(); ++worker)
+      workers.push_back(made(robot, problem, {}));
   }
-  virtual ~Impl() = default;
+  [[nodiscard]] Worker made(std::shared_ptr<const PreparedRobot> robot, const Problem& held,
+                            HeldPositions hold) const {
+    StudyPlanner planner(robot, held, single);
+    return {std::move(robot), held, std::move(hold), std::move(planner),
+            LeastMargins(alone_moved(problem, thing))};
+  }
+  /// Returns a worker, with the joints held as a cell has them.
+  Worker& held(int number, const HeldPositions& hold, const Budget& budget) {
+    Worker& worker = workers[static_cast<std::size_t>(number)];
+    if (worker.hold == hold) return worker;
+    Problem changed = problem;
+    hold_joints(changed, hold);
+    auto robot = worker.robot ? std::make_shared<const PreparedRobot>(
+                                    problem_of_run(changed, {0, false}), budget)
+                              : nullptr;
+    return worker = made(std::move(robot), changed, hold);
+  }
 
   [[nodiscard]] PlanOptions options_now() const {
     PlanOptions options = single;
@@ -186,199 +220,58 @@ struct PlacementPlanner::Impl {
     return row;
   }
   /// Plans a placement, and fills in its row. Returns false if it was stopped.
-  virtual bool fill(PlacementRow& row, int worker) = 0;
-  using Found = std::function<void(const PlacementCell&, const PlanResult&, const PlanView&,
-                                   const std::shared_ptr<const PreparedRobot>&)>;
-  virtual void plan_again(const std::vector<PlacementCell>& cells, const Found& found) = 0;
-};
-
-struct PlacementPlanner::ProblemPlacements : Impl {
-  std::shared_ptr<const PreparedRobot> robot;
-  PathProblem problem;
-  Movable thing;
-  /// What one thread plans with, and where its robot's joints are held.
-  struct Worker {
-    std::shared_ptr<const PreparedRobot> robot;
-    PathProblem problem;
-    HeldPositions hold;
-    Planner planner;
-    LeastMargins margins;
-  };
-  std::vector<Worker> workers;
-
-  ProblemPlacements(std::shared_ptr<const PreparedRobot> r, PathProblem p, Movable t,
-                    const PlanOptions& options)
-      : Impl(options), robot(std::move(r)), problem(std::move(p)), thing(std::move(t)) {
-    static_cast<void>(placed_problem(problem, thing, {}));
-    for (int worker = 0; worker < executor.threads(); ++worker)
-      workers.push_back(made(robot, problem, {}));
-  }
-
-  Worker made(std::shared_ptr<const PreparedRobot> of, const PathProblem& held,
-              HeldPositions hold) {
-    Planner planner(of, held);
-    return {std::move(of), held, std::move(hold), std::move(planner),
-            LeastMargins(alone_moved(problem, thing))};
-  }
-  /// Returns a worker, with the joints held as a cell has them and the thing placed.
-  Worker& placed(int number, const Offset& offset, const HeldPositions& hold,
-                 const Budget& budget) {
-    Worker& worker = workers[static_cast<std::size_t>(number)];
-    if (worker.hold != hold) {
-      PathProblem held = problem;
-      hold_joints(held, hold);
-      worker = made(std::make_shared<const PreparedRobot>(held, budget), held, hold);
-    }
-    worker.planner.set_problem(placed_problem(worker.problem, thing, offset));
-    return worker;
-  }
-
-  bool fill(PlacementRow& row, int worker) override {
-    const Budget budget = options_now().budget();
-    Worker& with = placed(worker, row.offset, row.hold, budget);
-    const PlanResult result = with.planner.plan(options_now());
-    row.status = result.status;
-    if (result.status == PlanStatus::kSolved) {
-      row.cost = result.cost;
-      row.checked = result.checked;
-      if (result.nearest_limit) row.joint_margin = result.nearest_limit->margin;
-      if (result.nearest_slide_limit) row.slide_margin = result.nearest_slide_limit->margin;
-      if (result.top_tool_speed) row.tool_speed = result.top_tool_speed->speed;
-      if (const auto least = with.margins.of(with.planner.view(), result.trajectory, budget)) {
-        row.clearance = least->clearance.distance;
-        row.clearance_margin = least->clearance.margin();
-      }
-      return true;
-    }
-    if (result.status != PlanStatus::kInfeasible || (!result.diagnosis.complete && budget.spent()))
-      return false;
-    const Cause& cause = result.diagnosis.cause;
-    row.failed_s = result.diagnosis.reached_s;
-    if (cause.kind != Cause::Kind::kNone) row.cause = to_string(cause.kind);
-    row.by = subject_of(cause, problem.scene);
-    row.reason = words(cause);
-    return true;
-  }
-
-  void plan_again(const std::vector<PlacementCell>& cells, const Found& found) override {
-    for (const PlacementCell& cell : cells) {
-      Worker& with = placed(0, cell.offset, cell.hold, options_now().budget());
-      const PlanResult result = with.planner.plan(options_now());
-      if (result.status == PlanStatus::kSolved || result.status == PlanStatus::kInfeasible)
-        found(cell, result, with.planner.view(), with.robot);
-    }
-  }
-};
-
-struct PlacementPlanner::JobPlacements : Impl {
-  /// A job with its joints held as in one cell, and its robot.
-  struct Held {
-    std::shared_ptr<const PreparedRobot> robot;
-    Problem job;
-    HeldPositions hold;
-  };
-  std::shared_ptr<const PreparedRobot> robot;
-  Problem job;
-  Movable thing;
-  std::vector<Held> workers;  ///< what each thread planned last
-
-  JobPlacements(std::shared_ptr<const PreparedRobot> r, Problem j, Movable t,
-                const PlanOptions& options)
-      : Impl(options), robot(std::move(r)), job(std::move(j)), thing(std::move(t)) {
-    single.evidence.postures = true;  // clearances
-    validate(job);
-    require_supported(single, "jobs");
-    robot->require_prepared_for(problem_of_run(job, {0, false}));
-    static_cast<void>(placed_problem(job, thing, {}));
-    workers.assign(static_cast<std::size_t>(executor.threads()), Held{robot, job, {}});
-  }
-
-  const Held& held(int worker, const HeldPositions& hold, const Budget& budget) {
-    Held& last = workers[static_cast<std::size_t>(worker)];
-    if (last.hold == hold) return last;
-    Problem changed = job;
-    hold_joints(changed, hold);
-    auto prepared =
-        std::make_shared<const PreparedRobot>(problem_of_run(changed, {0, false}), budget);
-    return last = {std::move(prepared), std::move(changed), hold};
-  }
-
-  bool fill(PlacementRow& row, int worker) override {
-    const Budget budget = options_now().budget();
-    const Held& with = held(worker, row.hold, budget);
-    const JobResult result =
-        plan_job(*with.robot, placed_problem(with.job, thing, row.offset), options_now());
-    if (!answered(result, budget)) return false;
-    row.status = result.status;
-    if (result.status == PlanStatus::kSolved) {
-      row.cost = result.cost;
-      row.checked = result.checked;
-      for (const RunResult& run : result.runs) take_least(run.measures, row);
-      return true;
-    }
-    failure_of(result, job).tell(row);
-    return true;
-  }
-
-  void plan_again(const std::vector<PlacementCell>& /*cells*/, const Found& /*found*/) override {}
-};
-
-struct PlacementPlanner::WorkcellPlacements : Impl {
-  Problem cell;
-  Movable thing;
-
-  WorkcellPlacements(Problem c, Movable t, const PlanOptions& options)
-      : Impl(options), cell(std::move(c)), thing(std::move(t)) {
-    single.evidence.postures = true;  // clearances
-    validate(cell);
-    require_supported(single, "workcells");
-    static_cast<void>(placed_problem(cell, thing, {}));
-  }
-
-  bool fill(PlacementRow& row, int /*worker*/) override {
+  bool fill(PlacementRow& row, int worker) {
     const PlanOptions options = options_now();
     const Budget budget = options.budget();
-    Problem placed = placed_problem(cell, thing, row.offset);
-    hold_joints(placed, row.hold);
-    const StudiedWorkcell found = plan_studied(placed, options, budget);
-    const WorkcellResult& result = found.result;
-    if (!found.fault && !answered(result, budget)) return false;
-    row.status = result.status;
-    if (result.status != PlanStatus::kSolved) {
-      found.failure(cell).tell(row);
+    Worker& with = held(worker, row.hold, budget);
+    const StudiedAnswer found =
+        with.planner.plan(placed_problem(with.problem, thing, row.offset), options, budget);
+    const Answer& answer = found.answer;
+    if (!found.known(budget)) return false;
+    row.status = answer.status;
+    if (answer.status != PlanStatus::kSolved) {
+      found.failure(problem).tell(row);
       return true;
     }
-    row.cost = result.cost;
-    row.checked = result.checked;
-    for (const PlanResult& arm : result.arms) take_least(arm, row);
-    if (result.between_arms) take_least(*result.between_arms, row);
+    row.cost = answer.cost;
+    row.checked = answer.checked;
+    for (const ArmAnswer& arm : answer.arms)
+      for (const RunAnswer& run : arm.runs) take_least(run, row);
+    if (answer.pair.nearest) take_least(*answer.pair.nearest, row);
+    if (const Planner* const path = with.planner.planner())
+      if (const auto least = with.margins.of(path->view(), answer.arm().rows(), budget))
+        take_least({.margin = least->clearance.margin(), .clearance = least->clearance.distance},
+                   row);
     return true;
   }
-
-  void plan_again(const std::vector<PlacementCell>& /*cells*/, const Found& /*found*/) override {}
+  /// Plans the cells of a problem of one path again and calls `found` after each that was answered.
+  void plan_again(const std::vector<PlacementCell>& cells,
+                  const std::function<void(const PlacementCell&, const PlanResult&, const PlanView&,
+                                           const Worker&)>& found) {
+    if (!is_path(problem)) return;
+    for (const PlacementCell& cell : cells) {
+      Worker& with = held(0, cell.hold, options_now().budget());
+      Planner& planner = *with.planner.planner();
+      planner.set_problem(
+          problem_of_run(placed_problem(with.problem, thing, cell.offset), {0, false}));
+      const PlanResult result = planner.plan(options_now());
+      if (result.status == PlanStatus::kSolved || result.status == PlanStatus::kInfeasible)
+        found(cell, result, planner.view(), with);
+    }
+  }
 };
 
 PlacementPlanner::PlacementPlanner(std::shared_ptr<const PreparedRobot> robot, PathProblem problem,
                                    Movable thing, PlanOptions options)
-    : impl_(std::make_unique<ProblemPlacements>(robot, std::move(problem), std::move(thing),
-                                                options)) {}
+    : PlacementPlanner(std::move(robot), one_path(problem), std::move(thing), std::move(options)) {}
 PlacementPlanner::PlacementPlanner(std::shared_ptr<const PreparedRobot> robot, Problem problem,
-                                   Movable thing, PlanOptions options) {
-  if (is_path(problem))
-    impl_ = std::make_unique<ProblemPlacements>(
-        std::move(robot), problem_of_run(problem, {0, false}), std::move(thing), options);
-  else
-    impl_ = std::make_unique<JobPlacements>(std::move(robot), std::move(problem), std::move(thing),
-                                            options);
-}
+                                   Movable thing, PlanOptions options)
+    : impl_(std::make_unique<Impl>(robot, std::move(problem), std::move(thing), options)) {}
 PlacementPlanner::PlacementPlanner(Problem problem, Movable thing, PlanOptions options) {
-  if (problem.arms.size() == 2) {
-    impl_ = std::make_unique<WorkcellPlacements>(std::move(problem), std::move(thing), options);
-    return;
-  }
-  auto robot = std::make_shared<const PreparedRobot>(problem_of_run(problem, {0, false}));
-  *this =
-      PlacementPlanner(std::move(robot), std::move(problem), std::move(thing), std::move(options));
+  std::shared_ptr<const PreparedRobot> robot;
+  if (problem.arms.size() == 1)
+    robot = std::make_shared<const PreparedRobot>(problem_of_run(problem, {0, false}));
+  impl_ = std::make_unique<Impl>(robot, std::move(problem), std::move(thing), options);
 }
 PlacementPlanner::PlacementPlanner(PlacementPlanner&&) noexcept = default;
 PlacementPlanner& PlacementPlanner::operator=(PlacementPlanner&&) noexcept = default;
@@ -390,21 +283,20 @@ bool PlacementPlanner::stopped() const {
 
 std::vector<PlacedPlan> PlacementPlanner::trajectories(const std::vector<PlacementCell>& cells) {
   std::vector<PlacedPlan> plans;
-  impl_->plan_again(cells,
-                    [&](const PlacementCell& cell, const PlanResult& result, const PlanView& view,
-                        const std::shared_ptr<const PreparedRobot>& robot) {
-                      if (result.status == PlanStatus::kSolved)
-                        plans.push_back({cell, view.problem.scene, result.trajectory, robot});
-                    });
+  impl_->plan_again(cells, [&](const PlacementCell& cell, const PlanResult& result,
+                               const PlanView& view, const Impl::Worker& with) {
+    if (result.status == PlanStatus::kSolved)
+      plans.push_back({cell, view.problem.scene, result.trajectory, with.robot});
+  });
   return plans;
 }
 
 void PlacementPlanner::plan_again(
     const std::vector<PlacementCell>& cells,
     const std::function<void(const PlacementCell&, const PlanResult&, const PlanView&)>& found) {
-  impl_->plan_again(
-      cells, [&](const PlacementCell& cell, const PlanResult& result, const PlanView& view,
-                 const std::shared_ptr<const PreparedRobot>&) { found(cell, result, view); });
+  impl_->plan_again(cells,
+                    [&](const PlacementCell& cell, const PlanResult& result, const PlanView& view,
+                        const Impl::Worker&) { found(cell, result, view); });
 }
 
 std::vector<PlacementRow> PlacementPlanner::plan(

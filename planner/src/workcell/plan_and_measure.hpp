@@ -13,8 +13,8 @@ namespace swivel {
 
 /// Plans a workcell as plan_workcell() does, but does not diagnose an arm that has no path by
 /// itself, and measures nothing. Returns and throws as plan_workcell() does.
-[[nodiscard]] WorkcellResult decide_workcell(const PreparedWorkcell& prepared,
-                                             const PlanOptions& options, const Budget& budget);
+[[nodiscard]] Answer decide_workcell(const PreparedWorkcell& prepared, const PlanOptions& options,
+                                     const Budget& budget);
 /// Refines rows at the layers of both paths and times them: again with more clearance where bodies
 /// come too near between samples. Throws as refine_workcell() and time_workcell() do.
 [[nodiscard]] RefinedWorkcellMotion refine_until_timed(
@@ -28,9 +28,8 @@ namespace swivel {
 /// Measures the trajectories of a result, of each arm by itself and between both, as far as
 /// `wanted` asks for it. Throws Stopped.
 void measure_workcell(const PreparedWorkcell& prepared, const Evidence& wanted,
-                      const Budget& budget, WorkcellResult& result);
+                      const Budget& budget, Answer& result);
 /// Finds the row and the bodies of both arms with the least margin. Throws Stopped.
-void measure_between_arms(const PreparedWorkcell& prepared, const Budget& budget,
-                          WorkcellResult& result);
+void measure_between_arms(const PreparedWorkcell& prepared, const Budget& budget, Answer& result);
 
 }  // namespace swivel

@@ -85,11 +85,16 @@ class WorkcellPlan {
         view_(view) {}
 
   /// `explained`: whether the trajectories are measured, or arms without a path diagnosed.
-  WorkcellResult plan(bool explained) {
+  Answer plan(bool explained) {
     const TraceSpan span("plan workcell");
     result_.planner = to_string(options_.planner);
     result_.threads = executor_.threads();
-    for (std::size_t k = 0; k < 2; ++k) result_.names[k] = prepared_.name(k);
+    result_.arms.assign(2, {});
+    for (std::size_t k = 0; k < 2; ++k) {
+      result_.arms[k].name = prepared_.name(k);
+      result_.arms[k].given = prepared_.given_arm() == k;
+      result_.arms[k].runs.emplace_back();
+    }
     try {
       Stopwatch watch;
       lay_out();
@@ -97,10 +102,9 @@ class WorkcellPlan {
       search();
       result_.time_ms["search"] = watch.lap();
       result_.time_ms["plan"] = result_.time_ms["lattice"] + result_.time_ms["search"];
-      if (!result_.arms[0].trajectory.empty())
+      if (result_.has_rows())
         prove_answer(options_, budget_, result_, [&] {
-          require_passed(check_workcell(prepared_,
-                                        {result_.arms[0].trajectory, result_.arms[1].trajectory},
+          require_passed(check_workcell(prepared_, rows_of_arms(result_),
                                         {.margins = false, .budget = budget_}));
         });
       watch.lap();
@@ -110,9 +114,8 @@ class WorkcellPlan {
       }
       if (view_) give_view();
     } catch (const Stopped&) {
-      if (result_.arms[0].trajectory.empty()) result_.status = stopped_status(budget_);
+      if (!result_.has_rows()) result_.status = stopped_status(budget_);
     }
-    for (PlanResult& arm : result_.arms) arm.status = result_.status;
     return std::move(result_);
   }
 
@@ -127,7 +130,6 @@ class WorkcellPlan {
 
   void lay_out() {
     const auto given = prepared_.given_arm();
-    result_.given_arm = given;
     executor_.for_each(2, [&](int arm, int) {
       const auto k = static_cast<std::size_t>(arm);
       if (given == k) require_sound(prepared_, budget_);
@@ -157,10 +159,8 @@ class WorkcellPlan {
       for (const std::string& line : unused_key_warnings(keys, arms_[k]->problem))
         result_.arms[k].warnings.push_back(line);
   }
-  void describe(const PlannedArm& arm, PlanResult& result) const {
+  void describe(const PlannedArm& arm, ArmAnswer& result) const {
     const Chain& chain = arm.robot.arm().chain;
-    result.planner = result_.planner;
-    result.threads = result_.threads;
     result.joint_names = chain.joint_names;
     result.held = arm.robot.arm().held;
     result.warnings = robot_warnings(arm.robot, arm.problem);
@@ -196,12 +196,12 @@ class WorkcellPlan {
       if (tell_turns_apart(outcome)) continue;
       for (std::size_t k = 0; k < 2; ++k) {
         const Lattice& lattice = *arms_[k]->lattice;
-        PlanResult& arm = result_.arms[k];
-        arm.trajectory = lattice.path_rows(outcome.paths[k]);
-        require_same_turns(lattice, arm.trajectory, arms_[k]->problem.source);
-        arm.lattice.cost = outcome.costs[k];
-        arm.cost = cost_of_rows(lattice, outcome.paths[k], arm.trajectory, outcome.costs[k]);
-        result_.cost += arm.cost - arm.lattice.cost;
+        Part part{.run = StrokeRun(), .rows = lattice.path_rows(outcome.paths[k])};
+        require_same_turns(lattice, part.rows, arms_[k]->problem.source);
+        part.cost = cost_of_rows(lattice, outcome.paths[k], part.rows, outcome.costs[k]);
+        result_.cost += part.cost - outcome.costs[k];
+        result_.arms[k].run().lattice.cost = outcome.costs[k];
+        result_.arms[k].parts.push_back(std::move(part));
       }
       result_.status = PlanStatus::kSolved;
       if (outcome.decided()) return;
@@ -244,22 +244,27 @@ class WorkcellPlan {
   }
 
   void note(const PairOutcome& outcome, BetweenArms& between) {
-    result_.cost = outcome.paths[0].empty() ? 0 : outcome.cost;
-    result_.bound = outcome.bound;
-    result_.least_costs = outcome.least_costs;
-    result_.decided_by = static_cast<WorkcellSearch>(outcome.decided_by);
-    result_.counters.rounds += outcome.rounds;
-    result_.counters.pops += outcome.pops;
-    result_.counters.node_pairs += outcome.node_pairs;
-    result_.counters.move_pairs += outcome.move_pairs;
-    for (std::size_t k = 0; k < 2; ++k) count(*arms_[k], result_.arms[k]);
+    result_.cost = result_.lattice_cost = outcome.paths[0].empty() ? 0 : outcome.cost;
+    result_.bound = result_.bound_any = outcome.bound;
+    PairAnswer& pair = result_.pair;
+    pair.decided_by = static_cast<PairSearch>(outcome.decided_by);
+    pair.counters.rounds += outcome.rounds;
+    pair.counters.pops += outcome.pops;
+    pair.counters.node_pairs += outcome.node_pairs;
+    pair.counters.move_pairs += outcome.move_pairs;
+    for (std::size_t k = 0; k < 2; ++k) {
+      count(*arms_[k], result_.arms[k]);
+      RunAnswer& run = result_.arms[k].run();
+      run.least_cost = outcome.least_costs[k];
+      run.status = run.least_cost == kUnreachable ? PlanStatus::kInfeasible : PlanStatus::kSolved;
+    }
     if (!outcome.decided() && outcome.paths[0].empty()) throw Stopped();
-    result_.conflict.reset();
+    result_.pair.conflict.reset();
     if (outcome.decided() && outcome.paths[0].empty() && !outcome.tree.empty() &&
         outcome.tree.front().region)
       note_conflict(*outcome.tree.front().region, outcome.alone, between);
   }
-  void count(const PlannedArm& arm, PlanResult& result) const {
+  void count(const PlannedArm& arm, ArmAnswer& result) const {
     Counters& sum = result.counters;
     sum.ik_nodes += arm.cost_to_go->ik_nodes();
     sum.edges += arm.cost_to_go->edges();
@@ -271,13 +276,13 @@ class WorkcellPlan {
       sum.proved_free += collision.proved_free;
       sum.proved_colliding += collision.proved_colliding;
     }
-    result.lattice = info_of(*arm.lattice, arm.robot.arm_class());
+    result.run().lattice = info_of(*arm.lattice, arm.robot.arm_class());
   }
   /// Notes where and by which bodies the arms bar each other on their cheapest paths, which meet in
   /// a region.
   void note_conflict(const ConflictRegion& region, const std::array<SlotPath, 2>& paths,
                      BetweenArms& between) {
-    ArmConflict& conflict = result_.conflict.emplace();
+    ArmConflict& conflict = result_.pair.conflict.emplace();
     conflict.layer = region.layer;
     conflict.of_motion = region.of_moves;
     std::optional<BodyPair> pair;
@@ -303,20 +308,22 @@ class WorkcellPlan {
 
   /// Measures the trajectories, or finds out why an arm has no path by itself.
   void explain() {
-    if (!result_.arms[0].trajectory.empty()) {
+    if (result_.has_rows()) {
+      const auto& arms = result_.arms;
       for (std::size_t k = 0; k < 2; ++k)
-        ask_for(options_.evidence, !arms_[k]->world.allowed().empty(), result_.arms[k]);
+        ask_for(options_.evidence, !arms_[k]->world.allowed().empty(), result_.arms[k].run());
       for (std::size_t k = 0; k < 2; ++k) {
-        PlanResult& arm = result_.arms[k];
-        measure_margins(arms_[k]->robot.arm().chain, arms_[k]->path, arm.trajectory, arm);
-        measure_rows(arms_[k]->robot, arms_[k]->path, arms_[k]->world, arm.trajectory,
-                     options_.evidence, budget_, arm);
+        RunAnswer& run = result_.arms[k].run();
+        measure_margins(arms_[k]->robot.arm().chain, arms_[k]->path, arms[k].rows(), run);
+        measure_rows(arms_[k]->robot, arms_[k]->path, arms_[k]->world, arms[k].rows(),
+                     options_.evidence, budget_, run);
       }
       if (options_.evidence.postures) measure_between_arms(prepared_, budget_, result_);
       return;
     }
     for (std::size_t k = 0; k < 2; ++k) {
-      if (result_.least_costs[k] != kUnreachable) continue;
+      ArmAnswer& arm = result_.arms[k];
+      if (arm.run().status != PlanStatus::kInfeasible) continue;
       PlanOptions alone = options_;
       alone.check = false;
       alone.timeout_s = budget_.seconds_left();
@@ -325,10 +332,10 @@ class WorkcellPlan {
           std::shared_ptr<const PreparedRobot>(std::shared_ptr<void>(), &prepared_.robot(k)),
           prepared_.problem(k));
       PlanResult found = planner->plan(alone);
-      const bool known = found.status == PlanStatus::kInfeasible;  // else the time was up
-      found.diagnosis.complete = known && found.diagnosis.complete;
-      result_.arms[k].diagnosis = std::move(found.diagnosis);
-      result_.arms[k].partial = std::move(found.partial);
+      const bool known = found.status == PlanStatus::kInfeasible;
+      if (!found.partial.empty())
+        arm.partial = {{.run = StrokeRun(), .rows = std::move(found.partial)}};
+      arm.run().diagnosis = diagnosis_alone(std::move(found));
       if (view_ && known) arms_[k]->without_path = std::move(planner);
     }
   }
@@ -364,7 +371,7 @@ class WorkcellPlan {
   WorkcellView* view_;
   PlannedArms arms_;
   std::array<std::string, 2> turns_;  // turns_note() of each arm's first path that did not fit
-  WorkcellResult result_;
+  Answer result_;
 };
 
 }  // namespace
@@ -384,52 +391,52 @@ std::optional<std::string> fault_of_given_motion(const PreparedWorkcell& prepare
 }
 
 void measure_workcell(const PreparedWorkcell& prepared, const Evidence& wanted,
-                      const Budget& budget, WorkcellResult& result) {
+                      const Budget& budget, Answer& result) {
   for (std::size_t k = 0; k < 2; ++k)
-    ask_for(wanted, !prepared.robot(k).world().allowed().empty(), result.arms[k]);
+    ask_for(wanted, !prepared.robot(k).world().allowed().empty(), result.arms[k].run());
   for (std::size_t k = 0; k < 2; ++k) {
     const PreparedRobot& robot = prepared.robot(k);
     const PathProblem& problem = prepared.problem(k);
     const ToolPath path = path_within_scale(problem, robot.arm().chain, budget);
-    PlanResult& arm = result.arms[k];
-    measure_margins(robot.arm().chain, path, arm.trajectory, arm);
-    measure_rows(robot, path, World(robot.world(), problem, budget), arm.trajectory, wanted, budget,
-                 arm);
+    ArmAnswer& arm = result.arms[k];
+    measure_margins(robot.arm().chain, path, arm.rows(), arm.run());
+    measure_rows(robot, path, World(robot.world(), problem, budget), arm.rows(), wanted, budget,
+                 arm.run());
   }
   if (wanted.postures) measure_between_arms(prepared, budget, result);
 }
 
-void measure_between_arms(const PreparedWorkcell& prepared, const Budget& budget,
-                          WorkcellResult& result) {
+void measure_between_arms(const PreparedWorkcell& prepared, const Budget& budget, Answer& result) {
   InterArmWorld::Query query(prepared.between());
-  result.between_arms.reset();
-  result.between_arms_measured = false;
-  const auto& rows = result.arms;
-  for (std::size_t row = 0; row < rows[0].trajectory.size(); ++row) {
+  std::optional<LeastMargin>& nearest = result.pair.nearest;
+  nearest.reset();
+  result.pair.measured = false;
+  const std::vector<TrajectoryRow>&first = result.arms[0].rows(), &second = result.arms[1].rows();
+  for (std::size_t row = 0; row < first.size(); ++row) {
     budget.poll();
-    const auto found = query.clearance({rows[0].trajectory[row].q, rows[1].trajectory[row].q});
+    const auto found = query.clearance({first[row].q, second[row].q});
     if (!found) break;
-    if (result.between_arms && found->margin() >= result.between_arms->margin) continue;
-    result.between_arms = {found->margin(), found->distance, found->required,
-                           prepared.between().names(found->pair), static_cast<int>(row)};
+    if (nearest && found->margin() >= nearest->margin) continue;
+    nearest = {found->margin(), found->distance, found->required,
+               prepared.between().names(found->pair), static_cast<int>(row)};
   }
-  result.between_arms_measured = true;
+  result.pair.measured = true;
 }
 
-WorkcellResult plan_workcell(const PreparedWorkcell& prepared, const PlanOptions& options,
-                             WorkcellView* view) {
+Answer plan_workcell(const PreparedWorkcell& prepared, const PlanOptions& options,
+                     WorkcellView* view) {
   require_supported(options, "workcells");
   if (view) *view = {};
   return WorkcellPlan(prepared, options, options.budget(), view).plan(true);
 }
 
-WorkcellResult decide_workcell(const PreparedWorkcell& prepared, const PlanOptions& options,
-                               const Budget& budget) {
+Answer decide_workcell(const PreparedWorkcell& prepared, const PlanOptions& options,
+                       const Budget& budget) {
   require_supported(options, "workcells");
   return WorkcellPlan(prepared, options, budget, nullptr).plan(false);
 }
 
-WorkcellResult plan_workcell(const Problem& cell, const PlanOptions& options) {
+Answer plan_workcell(const Problem& cell, const PlanOptions& options) {
   require_supported(options, "workcells");
   return plan_workcell(PreparedWorkcell(cell), options);
 }

@@ -24,7 +24,7 @@ class AfterPlan {
         options_(options),
         budget_(budget),
         plan_(plan),
-        planned_{plan.result.arms[0].trajectory, plan.result.arms[1].trajectory} {}
+        planned_(rows_of_arms(plan.result)) {}
 
   void run(bool refined, const std::optional<TimingOptions>& timing) {
     try {
@@ -87,7 +87,7 @@ class AfterPlan {
     if (!refined) return;
     RefinedWorkcell& none = plan_.refinement.emplace();
     for (std::size_t k = 0; k < 2; ++k) {
-      const double cost = plan_.result.arms[k].cost;
+      const double cost = plan_.result.arms[k].cost();
       none.arms[k] = {.rows = planned_[k], .reason = "stopped", .cost_before = cost, .cost = cost};
     }
     none.cost_before = none.cost = plan_.result.cost;
@@ -95,12 +95,13 @@ class AfterPlan {
 
   /// Replaces trajectories and costs of the result by the refined ones, where arms were refined.
   void take() {
-    WorkcellResult& result = plan_.result;
+    Answer& result = plan_.result;
     for (std::size_t k = 0; k < 2; ++k) {
       const Refined& arm = plan_.refinement->arms[k];
       if (!arm.refined) continue;
-      result.arms[k].trajectory = arm.rows;
-      result.arms[k].cost = arm.cost;
+      Part& part = result.arms[k].parts.front();
+      part.rows = arm.rows;
+      part.cost = arm.cost;
     }
     if (!is_refined()) return;
     result.refined = true;

@@ -96,16 +96,16 @@ Drawing draw(const Plan& plan, const PathProblem* given, bool with_page, bool fu
 }
 
 /// Returns true if two plans have the same rows of both arms.
-bool same_rows(const WorkcellResult& a, const WorkcellResult& b) {
-  return same_rows(a.arms[0].trajectory, b.arms[0].trajectory) &&
-         same_rows(a.arms[1].trajectory, b.arms[1].trajectory);
+bool same_rows(const Answer& a, const Answer& b) {
+  return same_rows(a.arms[0].rows(), b.arms[0].rows()) &&
+         same_rows(a.arms[1].rows(), b.arms[1].rows());
 }
 
 /// Plans a workcell again and returns its page. Throws ValueError for plans without a verdict, and
 /// if another plan is found.
 std::string page_of(const WorkcellPlan& plan, const Workcell* given) {
   require_pages();
-  const WorkcellResult& known = plan.plan->result;
+  const Answer& known = plan.plan->result;
   if ((known.status != PlanStatus::kSolved && known.status != PlanStatus::kInfeasible) ||
       plan.plan->stopped)
     throw py::value_error("the plan was stopped: allowed are plans that were not");
@@ -131,9 +131,9 @@ std::string page_of(const WorkcellPlan& plan, const Workcell* given) {
     const swivel::WorkcellMotion* const motion =
         timing && timing->motion ? &*timing->motion : nullptr;
     const io::VisualRobot visual = io::load_visuals(*cell.arms[0].model);
-    return to_workcell_page({prepared, cell, again.result, view, motion},
-                            io::to_workcell_json(again.result, extras), budget,
-                            {"", answer_text(again.result), visual.model.get(), visual.left_out});
+    return to_workcell_page(
+        {prepared, cell, again.result, view, motion}, io::to_workcell_json(again.result, extras),
+        budget, {"", answer_text(again.result, cell), visual.model.get(), visual.left_out});
   });
 }
 

@@ -5,6 +5,7 @@
 
 #include "interruptible.hpp"
 #include "job_results.hpp"
+#include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/answer/infeasibility_certificate.hpp"
 #include "swivel/core/motion/job_text.hpp"
 #include "swivel/io/io.hpp"
@@ -33,13 +34,13 @@ swivel::Problem completed(const JobPlan& plan, const Job* given) {
   return plan.timing ? with_motion_defaults(std::move(job)) : job;
 }
 
-bool same_parts(const JobResult& a, const JobResult& b) {
+bool same_parts(const Answer& a, const Answer& b) {
   const auto same_rows = [](const TrajectoryRow& x, const TrajectoryRow& y) {
     return x.s == y.s && x.q == y.q;
   };
   return a.status == b.status &&
-         std::equal(a.parts.begin(), a.parts.end(), b.parts.begin(), b.parts.end(),
-                    [&](const swivel::JobPart& x, const swivel::JobPart& y) {
+         std::equal(a.arm().parts.begin(), a.arm().parts.end(), b.arm().parts.begin(),
+                    b.arm().parts.end(), [&](const swivel::Part& x, const swivel::Part& y) {
                       return x.run == y.run && std::equal(x.rows.begin(), x.rows.end(),
                                                           y.rows.begin(), y.rows.end(), same_rows);
                     });
@@ -76,9 +77,9 @@ std::string page_of(const JobPlan& plan, const Job* given) {
     JobView view;
     const JobMotionPlan again = planned_again(plan, robot, job, options, view);
     const auto& [result, timing, stopped] = again;
-    const swivel::Problem executed = executed_job(job, result);
-    std::string text = job_text(result, executed);
-    if (timing) text += swivel::job_motion_text(*timing, result.parts, executed);
+    const swivel::Problem executed = executed_problem(job, result);
+    std::string text = answer_text(result, executed);
+    if (timing) text += swivel::job_motion_text(*timing, result.arm().parts, executed);
     const io::VisualRobot visual = io::load_visuals(*job.arm().model);
     return to_job_page(
         {robot, executed, result, view, timing && timing->motion ? &*timing->motion : nullptr},
@@ -96,8 +97,8 @@ InfeasibilityCertificate proof_of(const JobPlan& plan, const Job* given,
         "a certificate is of the job as it is: allowed is a plan without speed, turn_speed and "
         "rate");
   const swivel::Problem job = completed(plan, given);
-  const std::vector<RunResult>& runs = plan.result().runs;
-  const auto run = std::find_if(runs.begin(), runs.end(), [](const RunResult& one) {
+  const std::vector<RunAnswer>& runs = plan.result().arm().runs;
+  const auto run = std::find_if(runs.begin(), runs.end(), [](const RunAnswer& one) {
     return one.status == PlanStatus::kInfeasible;
   });
   if (run == runs.end())

@@ -131,16 +131,16 @@ std::array<std::string, 2> names_of(const swivel::Problem& cell) {
 }
 
 Trajectory trajectory_of(const WorkcellPlan& plan, std::size_t arm) {
-  const PlanResult& result = plan.plan->result.arms[arm];
-  return {std::shared_ptr<const std::vector<TrajectoryRow>>(plan.plan, &result.trajectory),
+  const ArmAnswer& result = plan.plan->result.arms[arm];
+  return {std::shared_ptr<const std::vector<TrajectoryRow>>(plan.plan, &result.rows()),
           result.joint_names};
 }
 
 /// Returns the refinement and the motion of a plan, as far as these were asked for.
 WorkcellMotion motion_of(const WorkcellPlan& plan) {
   const auto& [result, refinement, timing, stopped] = *plan.plan;
-  WorkcellMotion made{.names = result.names,
-                      .joint_names = {result.arms[0].joint_names, result.arms[1].joint_names},
+  WorkcellMotion made{.names = names_of_arms(result),
+                      .joint_names = joint_names_of_arms(result),
                       .frame = plan.frame};
   if (timing) made.timing = std::shared_ptr<const WorkcellTiming>(plan.plan, &*timing);
   if (refinement) made.refinement = std::shared_ptr<const RefinedWorkcell>(plan.plan, &*refinement);
@@ -198,7 +198,7 @@ WorkcellCheck check(const WorkcellOrFile& of, const Checked& rows) {
   if (const auto* const motion = std::get_if<WorkcellMotion>(&rows))
     for (std::size_t k = 0; k < 2; ++k) given.timed[k] = motion->motion().arms[k].rows;
   if (const auto* made = std::get_if<WorkcellPlan>(&rows))
-    for (std::size_t k = 0; k < 2; ++k) given.rows[k] = made->plan->result.arms[k].trajectory;
+    given.rows = rows_of_arms(made->plan->result);
   const auto* file = std::get_if<std::filesystem::path>(&rows);
   return interruptible([&](const std::stop_token& stop) -> WorkcellCheck {
     CheckOptions options;
@@ -276,13 +276,15 @@ void bind_plan(py::module_& m) {
       .def_property_readonly(
           "solved",
           [](const WorkcellPlan& p) { return p.plan->result.status == PlanStatus::kSolved; })
-      .def_property_readonly("names", [](const WorkcellPlan& p) { return p.plan->result.names; })
+      .def_property_readonly("names",
+                             [](const WorkcellPlan& p) { return names_of_arms(p.plan->result); })
       .def_property_readonly(
           "given",
           [](const WorkcellPlan& p) -> std::optional<std::string> {
-            const WorkcellResult& result = p.plan->result;
-            if (!result.given_arm) return {};
-            return result.names[*result.given_arm];
+            const Answer& result = p.plan->result;
+            const auto given = result.given_arm();
+            if (!given) return {};
+            return result.arms[*given].name;
           },
           "Name of the arm whose motion was given.")
       .def_property_readonly(
@@ -292,49 +294,51 @@ void bind_plan(py::module_& m) {
           "bound", [](const WorkcellPlan& p) { return p.plan->result.bound; },
           "No two paths without conflict cost less; inf: there are none.")
       .def_property_readonly(
-          "least_costs", [](const WorkcellPlan& p) { return p.plan->result.least_costs; },
+          "least_costs",
+          [](const WorkcellPlan& p) {
+            const auto& arms = p.plan->result.arms;
+            return std::array{arms[0].run().least_cost, arms[1].run().least_cost};
+          },
           "Of the arms by themselves; inf: it has no path.")
       .def_property_readonly(
-          "decided_by", [](const WorkcellPlan& p) { return to_string(p.plan->result.decided_by); },
+          "decided_by",
+          [](const WorkcellPlan& p) { return to_string(p.plan->result.pair.decided_by); },
           "'arms alone', 'regions', 'pairs of nodes', or 'none' where time was up.")
       .def_property_readonly(
           "trajectories",
           [](const WorkcellPlan& p) {
             py::dict all;
-            if (!p.plan->result.arms[0].trajectory.empty())
+            if (p.plan->result.has_rows())
               for (std::size_t k = 0; k < 2; ++k)
-                all[p.plan->result.names[k].c_str()] = py::cast(trajectory_of(p, k));
+                all[p.plan->result.arms[k].name.c_str()] = py::cast(trajectory_of(p, k));
             return all;
           },
           "Name of the arm -> Trajectory; rows of one number are simultaneous. Empty: no plan.")
       .def_property_readonly(
           "conflict",
           [](const WorkcellPlan& p) -> std::optional<std::array<std::string, 2>> {
-            if (!p.plan->result.conflict) return {};
-            return p.plan->result.conflict->bodies;
+            if (!p.plan->result.pair.conflict) return {};
+            return p.plan->result.pair.conflict->bodies;
           },
           "Two bodies that meet on the cheapest paths, where each arm has a path and both together "
           "have none.")
       .def(
           "diagnosis",
           [](const WorkcellPlan& p, const std::string& arm) -> std::optional<Diagnosis> {
-            const std::size_t k = number_of(p.plan->result.names, arm);
-            if (p.plan->result.status != PlanStatus::kInfeasible ||
-                std::isfinite(p.plan->result.least_costs[k]))
-              return {};
-            return p.plan->result.arms[k].diagnosis;
+            const std::size_t k = number_of(names_of_arms(p.plan->result), arm);
+            return p.plan->result.arms[k].run().diagnosis;
           },
           py::arg("arm"), "Why this arm has no path by itself.")
       .def_property_readonly(
           "clearance",
           [](const WorkcellPlan& p) -> std::optional<double> {
-            if (!p.plan->result.between_arms) return {};
-            return p.plan->result.between_arms->clearance;
+            if (!p.plan->result.pair.nearest) return {};
+            return p.plan->result.pair.nearest->clearance;
           },
           "Between bodies of both arms at rows, m, with evidence=True.")
       .def_property_readonly(
           "clearance_status",
-          [](const WorkcellPlan& p) { return to_string(p.plan->result.between_arms_status()); },
+          [](const WorkcellPlan& p) { return to_string(p.plan->result.pair.nearest_status()); },
           "'measured', 'none' (no pair is near) or 'not_measured' (not asked for, or time ran "
           "out).")
       .def_property_readonly("time_ms",
@@ -353,9 +357,8 @@ void bind_plan(py::module_& m) {
       .def(
           "save",
           [](const WorkcellPlan& p, const std::filesystem::path& file) {
-            if (p.plan->result.arms[0].trajectory.empty())
-              throw py::value_error("there is no plan");
-            io::write_file(file, io::to_workcell_csv(p.plan->result));
+            if (!p.plan->result.has_rows()) throw py::value_error("there is no plan");
+            io::write_file(file, io::to_csv(p.plan->result, swivel::two_arms()));
           },
           py::arg("file"), "The trajectories of both arms as CSV, docs/formats.md.")
       .def_property_readonly(
@@ -383,11 +386,11 @@ void bind_plan(py::module_& m) {
           py::arg("file"),
           "The motion of both arms as .csv, .json or .yaml (JointTrajectory), or .mcap.")
       .def("__repr__", [](const WorkcellPlan& p) {
-        return p.plan->result.arms[0].trajectory.empty()
+        return !p.plan->result.has_rows()
                    ? std::string("<WorkcellPlan ") + to_string(p.plan->result.status) + ">"
                    : formatted("<WorkcellPlan %s: %zu rows, cost %.6g>",
-                               to_string(p.plan->result.status),
-                               p.plan->result.arms[0].trajectory.size(), p.plan->result.cost);
+                               to_string(p.plan->result.status), p.plan->result.arm().rows().size(),
+                               p.plan->result.cost);
       });
 }
 

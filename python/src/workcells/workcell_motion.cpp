@@ -60,7 +60,7 @@ std::array<std::vector<TrajectoryRow>, 2> untimed_rows(const PreparedWorkcell& p
 }
 std::array<std::vector<TrajectoryRow>, 2> untimed_rows(const WorkcellPlan& plan) {
   std::array<std::vector<TrajectoryRow>, 2> rows;
-  for (std::size_t k = 0; k < 2; ++k) rows[k] = plan.plan->result.arms[k].trajectory;
+  rows = rows_of_arms(plan.plan->result);
   if (rows[0].empty())
     throw py::value_error(std::string("the plan has no trajectories: ") +
                           to_string(plan.plan->result.status));

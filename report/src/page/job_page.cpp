@@ -32,14 +32,14 @@ class JobPage {
         world_(runs_.empty() ? planned.robot.world() : runs_.front().world),
         budget_(budget),
         json_(Json::parse(result_json)) {
-    for (const RunResult& run : result_.runs) order_.push_back(run.run);
+    for (const RunAnswer& run : result_.arm().runs) order_.push_back(run.run);
     for (std::size_t k = 0; order_.size() < job_.arm().strokes.size(); ++k)
       order_.push_back({k, false});
     if (motion_ == nullptr) return;
     std::size_t run = 0;
-    for (std::size_t part = 0; part < result_.parts.size(); ++part) {
-      const bool is_run = result_.parts[part].run.has_value();
-      places_.push_back(places_of(samples_of(part), result_.parts[part].rows,
+    for (std::size_t part = 0; part < result_.arm().parts.size(); ++part) {
+      const bool is_run = result_.arm().parts[part].run.has_value();
+      places_.push_back(places_of(samples_of(part), result_.arm().parts[part].rows,
                                   is_run ? &runs_[run].lattice.path_of_rows() : nullptr));
       run += is_run ? 1 : 0;
     }
@@ -52,7 +52,7 @@ class JobPage {
       bodies.add_visual(*words.visual, *job_.arm().model, {{robot_.arm()}});
     Json strokes = Json::array();
     for (std::size_t k = 0; k < order_.size(); ++k) strokes.push_back(stroke(k));
-    Json parts = result_.parts.empty() ? partial_parts() : parts_of_job();
+    Json parts = result_.arm().parts.empty() ? partial_parts() : parts_of_job();
     json_.erase("parts");
     return {{"problem", name},
             {"which", words.which},
@@ -75,8 +75,8 @@ class JobPage {
  private:
   /// Returns the index of a run's part in the result; nullopt where there is no job.
   [[nodiscard]] std::optional<std::size_t> part_of(std::size_t run) const {
-    for (std::size_t p = 0; p < result_.parts.size(); ++p)
-      if (result_.parts[p].run == order_[run]) return p;
+    for (std::size_t p = 0; p < result_.arm().parts.size(); ++p)
+      if (result_.arm().parts[p].run == order_[run]) return p;
     return std::nullopt;
   }
 
@@ -133,9 +133,9 @@ class JobPage {
   /// angles from other planes in its rows than in its lattice, by the same angle all along.
   [[nodiscard]] std::vector<PageRow> placed_part(std::size_t part, const PlanView& view,
                                                  const LatticeMap& map) const {
-    std::vector<TrajectoryRow> rows = result_.parts[part].rows;
+    std::vector<TrajectoryRow> rows = result_.arm().parts[part].rows;
     if (motion_) rows = passed_rows(std::move(rows), samples_of(part), places_[part]);
-    const bool piece = job_.arm().strokes[result_.parts[part].run->stroke].piece.has_value();
+    const bool piece = job_.arm().strokes[result_.arm().parts[part].run->stroke].piece.has_value();
     const double turned =
         piece ? wrap_angle(view.lattice.phi(0, view.path.front()) - rows.front().phi) : 0;
     for (TrajectoryRow& row : rows) row.phi += turned;
@@ -154,7 +154,7 @@ class JobPage {
   Json parts_of_job() {
     Json list = Json::array();
     std::size_t next = 0;
-    for (const JobPart& part : result_.parts) {
+    for (const Part& part : result_.arm().parts) {
       Json json = {{"stroke", part.run ? Json(next++) : Json(nullptr)}, {"cost", part.cost}};
       if (!part.run) {
         json["rows"] = Json::array();
@@ -177,7 +177,7 @@ class JobPage {
   /// Returns the joints at home, and the two bodies that come too near there.
   [[nodiscard]] Json home() const {
     if (!job_.arm().home) return nullptr;
-    const std::optional<NoTransition>& none = result_.no_transition;
+    const std::optional<NoTransition>& none = result_.arm().no_transition;
     const bool barred = none && none->where == NoTransition::Where::kHome && none->bodies;
     return {{"q", std::vector<double>(job_.arm().home->begin(), job_.arm().home->end())},
             {"pair", barred ? Json(*none->bodies) : Json(nullptr)}};
@@ -187,13 +187,13 @@ class JobPage {
   /// parts; the last row of a part is the first one of the next.
   [[nodiscard]] Json motion() const {
     if (motion_ == nullptr) return nullptr;
-    std::vector<double> places{0}, begin(result_.parts.size(), 0.0);
+    std::vector<double> places{0}, begin(result_.arm().parts.size(), 0.0);
     double steps = 0;
-    for (std::size_t part = 0; part < result_.parts.size(); ++part) {
+    for (std::size_t part = 0; part < result_.arm().parts.size(); ++part) {
       // The first sample of a part is the last one of the part before.
       for (std::size_t k = 1; k < places_[part].size(); ++k)
         places.push_back(steps + places_[part][k]);
-      steps += static_cast<double>(result_.parts[part].rows.size() - 1);
+      steps += static_cast<double>(result_.arm().parts[part].rows.size() - 1);
     }
     const auto& rows = motion_->rows;
     for (std::size_t k = 1; k < rows.size(); ++k)
@@ -206,7 +206,7 @@ class JobPage {
   }
 
   const Problem& job_;
-  const JobResult& result_;
+  const Answer& result_;
   const std::vector<PlanView>& runs_;
   const JobMotion* motion_;
   const PreparedRobot& robot_;

@@ -85,7 +85,7 @@ class WorkcellPage {
     Bodies bodies;
     Json arms = Json::array(), ground = nullptr;
     for (std::size_t k = 0; k < 2; ++k) {
-      bodies.add_arm(view(k).world, result_.names[k], groups.of(k), k == 0);
+      bodies.add_arm(view(k).world, result_.arms[k].name, groups.of(k), k == 0);
       arms.push_back(arm(k));
       if (!ground.is_null()) continue;
       ground = ground_json(*planned_.cell.arms[k].model, view(k).robot.arm());
@@ -94,13 +94,13 @@ class WorkcellPage {
     bodies.add_scene(planned_.cell.scene);
     if (words.visual != nullptr)
       bodies.add_visual(*words.visual, *planned_.cell.arms[0].model,
-                        {{view(0).robot.arm(), result_.names[0], groups.of(0)},
-                         {view(1).robot.arm(), result_.names[1], groups.of(1)}});
+                        {{view(0).robot.arm(), result_.arms[0].name, groups.of(0)},
+                         {view(1).robot.arm(), result_.arms[1].name, groups.of(1)}});
     Json meeting = meetings(), conflict = conflict_json();
     return {{"problem", name},
             {"answer", words.answer},
             {"result", std::move(json_)},
-            {"chain", chain_of_both(chains, result_.names, groups)},
+            {"chain", chain_of_both(chains, names_of_arms(result_), groups)},
             {"ground", std::move(ground)},
             {"bodies", std::move(bodies.bodies)},
             {"visual", std::move(bodies.visual)},
@@ -123,20 +123,21 @@ class WorkcellPage {
   Json arm(std::size_t k) {
     const PlanView& of = view(k);
     const Lattice& lattice = of.lattice;
-    const std::vector<TrajectoryRow>& answer = result_.arms[k].trajectory;
+    const ArmAnswer& of_arm = result_.arms[k];
+    const std::vector<TrajectoryRow>& answer = of_arm.rows();
     const LatticeMap map = make_map(of, false, budget_);
     std::vector<TrajectoryRow> path = answer.empty() ? rows_of(lattice, of.path) : answer;
     Json moved = motion(k, path);
     const std::vector<PageRow> rows = placed(lattice, map, path, of.path);
     for (const PageRow& row : rows) shown_[k].push_back(row.at.q);
-    refined_[k] = !moved.is_null() ||
-                  (!answer.empty() && result_.arms[k].cost != result_.arms[k].lattice.cost);
+    refined_[k] =
+        !moved.is_null() || (!answer.empty() && of_arm.cost() != of_arm.run().lattice.cost);
     const int leader = planned_.cell.leader_of(k);
     const Json& diagnosis = json_["arms"][k]["diagnosis"];
     Json json = {
-        {"name", result_.names[k]},
+        {"name", result_.arms[k].name},
         {"leader", leader >= 0 ? Json(leader) : Json(nullptr)},
-        {"answer", has_path(k) ? "" : answer_text(result_.arms[k])},
+        {"answer", has_path(k) ? "" : run_text(of_arm.run(), of_arm.held)},
         {"chain", chain_json(lattice.chain())},
         {"settings", settings_json(of.problem, lattice)},
         {"tool_path", tool_path_json(lattice.path_of_rows())},
@@ -149,7 +150,7 @@ class WorkcellPage {
                                       : Json(nullptr)},
         {"region", region(k, map)}};
     json["map"] = map_json(map, lattice, of.world, of.path, rows, kMostCells * 3 / 4, budget_);
-    maps_ += "<h2>" + escaped(result_.names[k]) + "</h2>\n" + to_svg(map);
+    maps_ += "<h2>" + escaped(result_.arms[k].name) + "</h2>\n" + to_svg(map);
     return json;
   }
   /// Returns the points of a follower's path in the tool frame of its leader.
@@ -282,7 +283,7 @@ class WorkcellPage {
 
   /// Returns where the cheapest paths of both arms meet, as a place in their rows.
   Json conflict_json() {
-    const auto& conflict = result_.conflict;
+    const auto& conflict = result_.pair.conflict;
     if (!conflict || !has_path(0) || !has_path(1)) return nullptr;
     const int row = view(0).lattice.layer_of_rows(conflict->layer);
     const auto at = static_cast<std::size_t>(row);
@@ -309,7 +310,7 @@ class WorkcellPage {
   }
 
   const PlannedWorkcell& planned_;
-  const WorkcellResult& result_;
+  const Answer& result_;
   const InterArmWorld& between_;
   InterArmWorld::Query query_;
   const Budget& budget_;

@@ -92,7 +92,7 @@ int main() {
   planner.move("box", at(0.5, 0.0, 0.53));  // where the wrist must pass
   const swivel::PlanResult barred = planner.plan();
   expect(barred.status == swivel::PlanStatus::kInfeasible, "no path through the box");
-  const swivel::Cause& cause = barred.diagnosis.cause;
+  const swivel::Cause& cause = barred.diagnosis->cause;
   expect(cause.kind == swivel::Cause::Kind::kPair || cause.kind == swivel::Cause::Kind::kContact,
          "because two bodies are in the way");
   expect(cause.bodies[0] == "box" || cause.bodies[1] == "box", "one of which is the box");
@@ -110,7 +110,7 @@ int main() {
   options.hooks.check = std::make_shared<Shoulder>(0.01);
   const swivel::PlanResult refused = planner.plan(options);
   expect(refused.status == swivel::PlanStatus::kInfeasible &&
-             words(refused.diagnosis.cause).find("shoulder") != std::string::npos,
+             words(refused.diagnosis->cause).find("shoulder") != std::string::npos,
          "a check of one's own refuses, and is named");
 
   task.resolution = {.ds = 0.0002, .dphi = 0.0002};  // so fine that an answer takes minutes

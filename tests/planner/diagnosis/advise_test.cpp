@@ -159,7 +159,7 @@ void expect_outcome(const PathProblem& problem, const Advice& one, const PlanOpt
     ASSERT_EQ(there.cost, *one.cost) << what << ": " << words(one);
   }
   if (one.outcome != Outcome::kSolved) {
-    ASSERT_EQ(there.diagnosis.reached_s, one.reached_s) << what << ": " << words(one);
+    ASSERT_EQ(there.diagnosis->reached_s, one.reached_s) << what << ": " << words(one);
   }
   expect_stricter_unsolved(problem, one, options, what);
 }

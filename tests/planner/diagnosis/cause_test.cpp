@@ -23,7 +23,7 @@ bool further(const PlanResult& result, const Diagnosis& than) {
   if (result.status == PlanStatus::kSolved) return true;
   const int steps = result.lattice.layers - 1,
             reached = std::max(0, than.reached_layer.value_or(0));
-  return result.diagnosis.reached_layer.value_or(-1) >=
+  return result.diagnosis->reached_layer.value_or(-1) >=
          std::min(steps, reached + std::max(1, static_cast<int>(std::ceil(0.05 * steps))));
 }
 
@@ -104,7 +104,7 @@ void check_causes(const PathProblem& problem, const std::string& trial, CauseCou
   if (result.status != PlanStatus::kInfeasible) return;
   ++counts.infeasible;
   counts.started += problem.start.has_value();
-  const Diagnosis& d = result.diagnosis;
+  const Diagnosis& d = *result.diagnosis;
   const std::string what = trial + " " + problem.source + " layer " +
                            std::to_string(d.reached_layer.value_or(-1)) + ": " + words(d.cause);
   ASSERT_NE(d.cause.kind, Cause::Kind::kNone) << what;
@@ -154,14 +154,14 @@ TEST(Cause, OfExperimentAFromItsGivenStartIsTheLimitOfJoint5) {
       io::load_path_problem(data_dir() / "problems/experiment_a_start.yaml");
   const PlanResult result = plan(problem);
   ASSERT_EQ(result.status, PlanStatus::kInfeasible);
-  const Diagnosis& d = result.diagnosis;
+  const Diagnosis& d = *result.diagnosis;
   EXPECT_EQ(d.cause.kind, Cause::Kind::kLimit) << words(d.cause);
   EXPECT_EQ(d.cause.joint, "arm_left_joint_5_r");
   EXPECT_EQ(d.cause.side, Cause::Side::kUpper);
   ASSERT_TRUE(d.without_it.has_value());
   const PlanResult after = plan(without(d.cause, problem).value());
   EXPECT_TRUE(further(after, d)) << to_string(after.status) << " "
-                                 << after.diagnosis.reached_layer.value_or(-1);
+                                 << after.diagnosis->reached_layer.value_or(-1);
 }
 
 }  // namespace

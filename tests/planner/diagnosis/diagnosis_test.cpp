@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "diagnosis/diagnosis.hpp"
+#include "diagnosis_of.hpp"
 
 #include <gtest/gtest.h>
 
@@ -133,8 +134,8 @@ TEST(Diagnosis, AnArmThatIsNotExactGetsTheSameAnswers) {
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     ASSERT_EQ(eager.status, lazy.status) << what;
     ASSERT_EQ(eager.cost, lazy.cost) << what;
-    ASSERT_EQ(eager.diagnosis.reached_layer, lazy.diagnosis.reached_layer) << what;
-    ASSERT_EQ(words(eager.diagnosis.cause), words(lazy.diagnosis.cause)) << what;
+    ASSERT_EQ(diagnosis_of(eager).reached_layer, diagnosis_of(lazy).reached_layer) << what;
+    ASSERT_EQ(words(diagnosis_of(eager).cause), words(diagnosis_of(lazy).cause)) << what;
     (eager.status == PlanStatus::kSolved ? solved : infeasible) += 1;
     asked += lazy.counters.nodes_checked;
     asked_eagerly += eager.counters.nodes_checked;
@@ -163,9 +164,9 @@ TEST(Diagnosis, SaysByHowMuchAPoseIsOutOfReach) {
     const Laid laid(problem);
     const PlanResult result = plan(laid.robot, problem, options);
     ASSERT_EQ(result.status, PlanStatus::kInfeasible);
-    EXPECT_TRUE(result.diagnosis.complete);
+    EXPECT_TRUE(diagnosis_of(result).complete);
     const SrsArm& arm = laid.robot.srs();
-    for (const EmptyLayers& empty : result.diagnosis.empty_layers) {
+    for (const EmptyLayers& empty : diagnosis_of(result).empty_layers) {
       if (empty.cause.kind != Cause::Kind::kReach) continue;
       const bool far = empty.cause.side == Cause::Side::kUpper;
       double least = 1e9, most = 0;
@@ -197,7 +198,7 @@ TEST(Diagnosis, SaysByHowMuchAJointIsOutsideItsLimits) {
     const Laid laid(problem);
     const PlanResult result = plan(laid.robot, problem, options);
     if (result.status != PlanStatus::kInfeasible) continue;
-    for (const EmptyLayers& empty : result.diagnosis.empty_layers) {
+    for (const EmptyLayers& empty : diagnosis_of(result).empty_layers) {
       const Cause& cause = empty.cause;
       if (cause.kind != Cause::Kind::kLimit || cause.other_joints || !cause.by()) continue;
       const auto exists_with = [&](double more) {

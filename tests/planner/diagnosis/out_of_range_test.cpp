@@ -61,7 +61,7 @@ TEST(OutOfRange, ARingThatNeedsMoreThanTheTurnsOfJoint1NamesIt) {
     problem.limits.clearance = 0.002;
     const PlanResult result = planned(problem);
     ASSERT_EQ(result.status, PlanStatus::kInfeasible) << what;
-    const Cause& cause = result.diagnosis.cause;
+    const Cause& cause = result.diagnosis->cause;
     EXPECT_EQ(cause.kind, Cause::Kind::kLimit) << what << ": " << words(cause);
     EXPECT_EQ(cause.joint, "joint_a1") << what;
     EXPECT_TRUE(cause.unwinds) << what;
@@ -101,12 +101,12 @@ TEST(OutOfRange, AJointOfSixThatLeavesItsRangeIsNamedWithHowFar) {
     const PlanResult result = planned(problem);
     if (result.status != PlanStatus::kInfeasible) continue;
     ++infeasible;
-    const Cause& cause = result.diagnosis.cause;
+    const Cause& cause = result.diagnosis->cause;
     EXPECT_NE(cause.joint, "roll") << what << ": " << words(cause) << ' ' << figures(cause);
-    if (cause.kind != Cause::Kind::kLimit || !result.diagnosis.reached_layer) continue;
+    if (cause.kind != Cause::Kind::kLimit || !result.diagnosis->reached_layer) continue;
     ++joints;
     ASSERT_TRUE(cause.value && cause.limit) << what;
-    EXPECT_TRUE(result.diagnosis.together.empty()) << what;
+    EXPECT_TRUE(result.diagnosis->together.empty()) << what;
     PathProblem wider = problem;
     auto model = std::make_shared<RobotModel>(*robot.model);
     for (Joint& joint : model->joints) {

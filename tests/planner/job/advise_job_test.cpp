@@ -44,14 +44,14 @@ struct Advised {
     return nullptr;
   }
   PreparedRobot robot;
-  JobResult result;
+  Answer result;
   AdviceOnJob advice;
 };
 
 void expect_solved(const JobAdvice* advice, const PreparedRobot& robot, const Problem& changed) {
   ASSERT_NE(advice, nullptr);
   ASSERT_EQ(advice->outcome, Advice::Outcome::kSolved) << words(*advice);
-  const JobResult found = plan_job(robot, changed);
+  const Answer found = plan_job(robot, changed);
   ASSERT_EQ(found.status, PlanStatus::kSolved) << words(*advice);
   EXPECT_EQ(found.cost, *advice->cost) << words(*advice);
 }
@@ -61,7 +61,7 @@ TEST(AdviseJob, LeavesOutStrokesThatHaveNoPath) {
   for (Waypoint& waypoint : job.arm().strokes[1].waypoints) waypoint.position.x() += 3;
   const Advised advised(job);
   ASSERT_EQ(advised.result.status, PlanStatus::kInfeasible);
-  EXPECT_FALSE(advised.result.no_transition);
+  EXPECT_FALSE(advised.result.arm().no_transition);
   const JobAdvice* without = advised.find(Change::kWithoutStrokes);
   ASSERT_NE(without, nullptr);
   EXPECT_EQ(without->strokes, std::vector<std::string>{job.arm().strokes[1].name});
@@ -84,10 +84,10 @@ TEST(AdviseJob, MovesAHomeThatIsBarred) {
   ball.pose = robot.arm().chain.tool(*job.arm().home);
   job.scene.push_back(ball);
   const Advised advised(job);
-  ASSERT_TRUE(advised.result.no_transition);
-  EXPECT_EQ(advised.result.no_transition->where, NoTransition::Where::kHome);
-  EXPECT_EQ((*advised.result.no_transition->bodies)[1], "ball")
-      << (*advised.result.no_transition->bodies)[0];
+  ASSERT_TRUE(advised.result.arm().no_transition);
+  EXPECT_EQ(advised.result.arm().no_transition->where, NoTransition::Where::kHome);
+  EXPECT_EQ((*advised.result.arm().no_transition->bodies)[1], "ball")
+      << (*advised.result.arm().no_transition->bodies)[0];
   const JobAdvice* home = advised.find(Change::kHome);
   ASSERT_NE(home, nullptr);
   ASSERT_TRUE(home->home);
@@ -105,12 +105,12 @@ TEST(AdviseJob, LengthensLinesWhereEndsAreTooNear) {
   for (Stroke& stroke : job.arm().strokes) stroke.approach = stroke.retract = Vector3d::Zero();
   const Advised advised(job);
   ASSERT_EQ(advised.result.status, PlanStatus::kInfeasible);
-  ASSERT_TRUE(advised.result.no_transition);
-  const auto where = advised.result.no_transition->where;
+  ASSERT_TRUE(advised.result.arm().no_transition);
+  const auto where = advised.result.arm().no_transition->where;
   EXPECT_TRUE(where == NoTransition::Where::kEndBefore || where == NoTransition::Where::kBegin);
-  ASSERT_TRUE(advised.result.no_transition->bodies);
-  EXPECT_EQ((*advised.result.no_transition->bodies)[1], "door");
-  EXPECT_EQ(advised.result.transitions.searches, 0);
+  ASSERT_TRUE(advised.result.arm().no_transition->bodies);
+  EXPECT_EQ((*advised.result.arm().no_transition->bodies)[1], "door");
+  EXPECT_EQ(advised.result.arm().transitions.searches, 0);
   const JobAdvice* lines = advised.find(Change::kLines);
   ASSERT_NE(lines, nullptr);
   ASSERT_TRUE(lines->length);

@@ -161,8 +161,8 @@ struct JobCounts {
 };
 
 /// Expects that ten laps of each closed stroke are one and the same.
-void expect_laps(const Chain& chain, const JobResult& found, const std::string& what) {
-  for (const JobPart& part : found.parts) {
+void expect_laps(const Chain& chain, const Answer& found, const std::string& what) {
+  for (const Part& part : found.arm().parts) {
     if (!part.run) continue;
     Config at = part.rows.front().q;
     for (int lap = 0; lap < 10; ++lap)
@@ -175,11 +175,10 @@ void expect_laps(const Chain& chain, const JobResult& found, const std::string& 
   }
 }
 
-void expect_spoilt_end_refused(const PreparedRobot& robot, const Problem& job,
-                               const JobResult& found, const std::string& what) {
-  std::vector<JobPart> parts = found.parts;
-  const auto part =
-      std::find_if(parts.begin(), parts.end(), [](const JobPart& p) { return p.run; });
+void expect_spoilt_end_refused(const PreparedRobot& robot, const Problem& job, const Answer& found,
+                               const std::string& what) {
+  std::vector<Part> parts = found.arm().parts;
+  const auto part = std::find_if(parts.begin(), parts.end(), [](const Part& p) { return p.run; });
   part->rows.back().q[3] += 2e-9;
   const JobCheckResult refused = check_job(robot, job, parts);
   ASSERT_FALSE(refused.passed) << what;
@@ -189,17 +188,17 @@ void expect_spoilt_end_refused(const PreparedRobot& robot, const Problem& job,
 
 /// Expects a job with a ring that has no path to be infeasible, and such a ring to be named. Where
 /// one is named, joints of more than a turn may still be circles in another, which then has a path.
-void expect_verdict(const JobResult& found, const std::vector<PlainRing>& rings,
+void expect_verdict(const Answer& found, const std::vector<PlainRing>& rings,
                     const std::string& what, JobCounts& counts) {
   ASSERT_EQ(found.status, PlanStatus::kInfeasible) << what;
   int named = 0;
   for (std::size_t k = 0; k < rings.size(); ++k) {
-    if (found.runs[k].status != PlanStatus::kInfeasible) continue;
+    if (found.arm().runs[k].status != PlanStatus::kInfeasible) continue;
     ++named;
     ASSERT_TRUE(rings[k].seams.empty()) << what << " ring " << k;
-    ASSERT_TRUE(found.runs[k].diagnosis) << what << " ring " << k;
+    ASSERT_TRUE(found.arm().runs[k].diagnosis) << what << " ring " << k;
     const bool open = rings[k].truth.open.solved;
-    ASSERT_EQ(found.runs[k].diagnosis->cause.kind == Cause::Kind::kNotClosed, open)
+    ASSERT_EQ(found.arm().runs[k].diagnosis->cause.kind == Cause::Kind::kNotClosed, open)
         << what << " ring " << k;
     ++(open ? counts.not_closed : counts.without_path);
   }
@@ -212,8 +211,8 @@ void expect_plain_job(const RingArm& arm, const Problem& job, bool any_order,
   std::vector<PlainRing> rings;
   for (std::size_t k = 0; k < job.arm().strokes.size(); ++k)
     rings.push_back(plain_ring(robot, job, k, arm.nodes));
-  const JobResult found = plan_job(robot, job);
-  if (found.no_transition) {  // home is barred, or no way was found
+  const Answer found = plan_job(robot, job);
+  if (found.arm().no_transition) {  // home is barred, or no way was found
     ++counts.barred;
     return;
   }
@@ -232,13 +231,13 @@ void expect_plain_job(const RingArm& arm, const Problem& job, bool any_order,
     ++counts.exact;
   }
   for (std::size_t k = 0; k < rings.size(); ++k) {
-    ASSERT_NEAR(found.runs[k].least_cost, rings[k].truth.cost, rounding) << what;
-    const auto part = std::find_if(found.parts.begin(), found.parts.end(),
-                                   [&](const JobPart& p) { return p.run && p.run->stroke == k; });
+    ASSERT_NEAR(found.arm().runs[k].least_cost, rings[k].truth.cost, rounding) << what;
+    const auto part = std::find_if(found.arm().parts.begin(), found.arm().parts.end(),
+                                   [&](const Part& p) { return p.run && p.run->stroke == k; });
     counts.dearer += part->cost > rings[k].truth.cost + rounding;
     counts.lines += job.arm().strokes[k].approach != Vector3d::Zero();
   }
-  const JobCheckResult check = check_job(robot, job, found.parts);
+  const JobCheckResult check = check_job(robot, job, found.arm().parts);
   ASSERT_TRUE(check.passed) << what << ": " << check.failures.front();
   expect_laps(robot.arm().chain, found, what);
   if (::testing::Test::HasFatalFailure()) return;
@@ -249,7 +248,7 @@ void expect_plain_job(const RingArm& arm, const Problem& job, bool any_order,
     best = std::min(best, plain_job(job, rings, order, moves).cost);
   Problem ordered = job;
   ordered.arm().order = StrokeOrder::kBest;
-  const JobResult in_best = plan_job(robot, ordered);
+  const Answer in_best = plan_job(robot, ordered);
   ASSERT_LE(in_best.lattice_cost, found.lattice_cost + rounding) << what;
   ASSERT_GE(in_best.lattice_cost, best - rounding) << what;
 }

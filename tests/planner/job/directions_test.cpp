@@ -68,25 +68,25 @@ std::optional<Problem> written(const Problem& of, unsigned turned) {
   return job;
 }
 
-bool is_straight(const JobResult& job) {
-  return std::all_of(job.parts.begin(), job.parts.end(),
-                     [](const JobPart& part) { return part.run || part.rows.size() == 2; });
+bool is_straight(const Answer& job) {
+  return std::all_of(job.arm().parts.begin(), job.arm().parts.end(),
+                     [](const Part& part) { return part.run || part.rows.size() == 2; });
 }
 
 /// Returns a job whose runs are those of other jobs, with straight moves between them.
-std::vector<JobPart> joined(const Problem& job, const std::vector<const JobPart*>& runs) {
-  std::vector<JobPart> parts;
+std::vector<Part> joined(const Problem& job, const std::vector<const Part*>& runs) {
+  std::vector<Part> parts;
   std::optional<Config> at = job.arm().home;
   const auto go_to = [&](const Config& q) {
     if (!at) return;
-    JobPart& move = parts.emplace_back();
+    Part& move = parts.emplace_back();
     for (const Config& end : {*at, q}) {
       TrajectoryRow row;
       row.q = end;
       move.rows.push_back(row);
     }
   };
-  for (const JobPart* const run : runs) {
+  for (const Part* const run : runs) {
     go_to(run->rows.front().q);
     parts.push_back(*run);
     at = run->rows.back().q;
@@ -102,37 +102,37 @@ struct Met {
 /// Holds a job against all directions of its strokes, each written by hand.
 void expect_cheapest(const PreparedRobot& robot, const Problem& job, const std::string& what,
                      Random& random, Met& met) {
-  const JobResult found = plan_job(robot, job);
-  std::vector<std::vector<JobPart>> runs(job.arm().strokes.size());  // by stroke, of all directions
+  const Answer found = plan_job(robot, job);
+  std::vector<std::vector<Part>> runs(job.arm().strokes.size());  // by stroke, of all directions
   double least = kNone;
-  bool straight = is_straight(found), sought = found.transitions.searches > 0;
+  bool straight = is_straight(found), sought = found.arm().transitions.searches > 0;
   for (unsigned turned = 0; turned < 1U << job.arm().strokes.size(); ++turned) {
     const std::optional<Problem> by_hand = written(job, turned);
     if (!by_hand) continue;
-    JobResult other = plan_job(robot, *by_hand);
-    if (other.parts.empty()) continue;
+    Answer other = plan_job(robot, *by_hand);
+    if (other.arm().parts.empty()) continue;
     straight = straight && is_straight(other);
-    sought = sought || other.transitions.searches > 0;
+    sought = sought || other.arm().transitions.searches > 0;
     least = std::min(least, other.cost);
-    for (JobPart& part : other.parts) {
+    for (Part& part : other.arm().parts) {
       if (!part.run) continue;
       part.run->reversed = (turned >> part.run->stroke & 1) != 0;
       runs[part.run->stroke].push_back(part);
     }
-    const JobCheckResult check = check_job(robot, job, other.parts);
+    const JobCheckResult check = check_job(robot, job, other.arm().parts);
     ASSERT_TRUE(check.passed) << what << ": " << check.failures.front();
     ASSERT_GE(check.cost, found.bound_any - 1e-9) << what;
     ++met.checked;
   }
   ++met.jobs;
-  ASSERT_EQ(found.parts.empty(), least == kNone) << what;
-  if (found.parts.empty()) {
+  ASSERT_EQ(found.arm().parts.empty(), least == kNone) << what;
+  if (found.arm().parts.empty()) {
     ++met.none;
     return;
   }
-  const JobCheckResult own = check_job(robot, job, found.parts);
+  const JobCheckResult own = check_job(robot, job, found.arm().parts);
   ASSERT_TRUE(own.passed) << what << ": " << own.failures.front();
-  for (const JobPart& part : found.parts) met.turned += part.run && part.run->reversed;
+  for (const Part& part : found.arm().parts) met.turned += part.run && part.run->reversed;
   if (straight) {  // else costs depend on the ways around that were found
     // Where ways around were sought, those of a joint's nearest turn alone were.
     ASSERT_NEAR(found.cost, least, sought ? 1e-3 * least : 1e-9) << what;
@@ -140,7 +140,7 @@ void expect_cheapest(const PreparedRobot& robot, const Problem& job, const std::
     met.equal += sought ? 0 : 1;
   }
   for (int k = 0; k < 4; ++k) {
-    std::vector<const JobPart*> taken;
+    std::vector<const Part*> taken;
     for (const auto& of : runs)
       taken.push_back(&of[static_cast<std::size_t>(random.below(static_cast<int>(of.size())))]);
     const JobCheckResult check = check_job(robot, job, joined(job, taken));
@@ -181,7 +181,7 @@ TEST(Directions, TheOneWithAPathIsTakenWhereTheOtherHasNone) {
   stroke.reversible = true;
   stroke.approach = Vector3d(0, 0, -3);  // out of reach, before whichever waypoint comes first
   EXPECT_EQ(plan_job(job).status, PlanStatus::kInfeasible);
-  EXPECT_EQ(plan_job(job).runs.front().run, (StrokeRun{0, false}));
+  EXPECT_EQ(plan_job(job).arm().runs.front().run, (StrokeRun{0, false}));
 }
 
 }  // namespace

@@ -199,7 +199,7 @@ TEST(LiftOffs, LeastNumberAgainstAllCuts) {
     const PreparedRobot robot(problem_of_run(job, {0, false}));
     const Plain plain(robot, job);
     const auto least = plain.least_runs(job.arm().lift->overlap);
-    const JobResult found = plan_job(robot, job, with_check());
+    const Answer found = plan_job(robot, job, with_check());
     SCOPED_TRACE("trial " + std::to_string(trial));
     if (!least) {
       ++none;
@@ -208,13 +208,13 @@ TEST(LiftOffs, LeastNumberAgainstAllCuts) {
     }
     ++(*least == 1 ? one : *least == 2 ? two : more);
     ASSERT_EQ(found.status, PlanStatus::kSolved);
-    ASSERT_EQ(static_cast<int>(found.lift_offs.size()) + 1, *least);
+    ASSERT_EQ(static_cast<int>(found.arm().lift_offs.size()) + 1, *least);
     EXPECT_TRUE(found.checked);
-    const Problem executed = executed_job(job, found);
-    const JobCheckResult check = check_job(robot, executed, found.parts);
+    const Problem executed = executed_problem(job, found);
+    const JobCheckResult check = check_job(robot, executed, found.arm().parts);
     EXPECT_TRUE(check.passed);
     EXPECT_NEAR(check.cost, found.cost, 1e-6 * found.cost);
-    for (const LiftOffResult& lift : found.lift_offs) {
+    for (const LiftOffAnswer& lift : found.arm().lift_offs) {
       EXPECT_LE(lift.resumed, std::max(0.0, lift.end - job.arm().lift->overlap) + 1e-9);
       EXPECT_GE(lift.reached, lift.end - 1e-9);
     }
@@ -236,9 +236,9 @@ double best_of_all_places(const PreparedRobot& robot, const Problem& job, const 
       std::vector<LiftOff> places;
       for (const int end : ends)
         places.push_back({0, plain.s(end), plain.s(plain.resumed(end, job.arm().lift->overlap))});
-      const JobResult found = plan_job(robot, with_lift_offs(job, places));
+      const Answer found = plan_job(robot, with_lift_offs(job, places));
       ++tried;
-      if (!found.parts.empty()) least = std::min(least, found.cost);
+      if (!found.arm().parts.empty()) least = std::min(least, found.cost);
       return;
     }
     for (int end = std::max(begin + 1, ends.empty() ? 1 : ends.back() + 1);
@@ -267,7 +267,7 @@ TEST(LiftOffs, PlacesAgainstAllPlaces) {
     const auto runs = plain.least_runs(job.arm().lift->overlap);
     if (!runs || *runs < 2 || *runs > 3) continue;
     ++(*runs == 2 ? two : more);
-    const JobResult found = plan_job(robot, job);
+    const Answer found = plan_job(robot, job);
     ASSERT_EQ(found.status, PlanStatus::kSolved);
     const double lifts = job.arm().lift->cost * (*runs - 1);
     const double best = best_of_all_places(robot, job, plain, *runs - 1, tried) + lifts;
@@ -297,18 +297,18 @@ TEST(LiftOffs, LinesAndObstacles) {
     PlanOptions one = with_check(), two = with_check();
     one.threads = 1;
     two.threads = 2;
-    const JobResult found = plan_job(robot, job, one), again = plan_job(robot, job, two);
+    const Answer found = plan_job(robot, job, one), again = plan_job(robot, job, two);
     SCOPED_TRACE("trial " + std::to_string(trial));
     ASSERT_EQ(found.status, again.status);
-    if (found.lift_offs.empty()) continue;
+    if (found.arm().lift_offs.empty()) continue;
     ++solved;
-    lift_offs += static_cast<int>(found.lift_offs.size());
+    lift_offs += static_cast<int>(found.arm().lift_offs.size());
     ASSERT_EQ(found.cost, again.cost);
-    ASSERT_EQ(found.parts.size(), again.parts.size());
-    for (std::size_t k = 0; k < found.parts.size(); ++k)
-      for (std::size_t i = 0; i < found.parts[k].rows.size(); ++i)
-        ASSERT_EQ(found.parts[k].rows[i].q, again.parts[k].rows[i].q);
-    EXPECT_TRUE(check_job(robot, executed_job(job, found), found.parts).passed);
+    ASSERT_EQ(found.arm().parts.size(), again.arm().parts.size());
+    for (std::size_t k = 0; k < found.arm().parts.size(); ++k)
+      for (std::size_t i = 0; i < found.arm().parts[k].rows.size(); ++i)
+        ASSERT_EQ(found.arm().parts[k].rows[i].q, again.arm().parts[k].rows[i].q);
+    EXPECT_TRUE(check_job(robot, executed_problem(job, found), found.arm().parts).passed);
   }
   std::printf("%d jobs with %d lift-offs\n", solved, lift_offs);
   EXPECT_GE(solved, at_least(12));
@@ -321,12 +321,12 @@ TEST(LiftOffs, RingInTime) {
   job.arm().strokes.front().resolution.dphi = 0.1;
   const PreparedRobot robot(problem_of_run(job, {0, false}));
   const JobMotionPlan plan = plan_job_motion(robot, job, with_check(), {.speed = 0.05});
-  ASSERT_EQ(plan.result.lift_offs.size(), 1u);
+  ASSERT_EQ(plan.result.arm().lift_offs.size(), 1u);
   ASSERT_TRUE(plan.timing && plan.timing->motion);
-  const Problem executed = executed_job(with_motion_defaults(job), plan.result);
+  const Problem executed = executed_problem(with_motion_defaults(job), plan.result);
   ASSERT_EQ(executed.arm().strokes.size(), 2u);
   EXPECT_EQ(executed.arm().strokes[1].name, "ring/2");
-  EXPECT_EQ(s_of_piece(executed.arm().strokes[1]), plan.result.lift_offs[0].resumed);
+  EXPECT_EQ(s_of_piece(executed.arm().strokes[1]), plan.result.arm().lift_offs[0].resumed);
   EXPECT_TRUE(
       check_job_motion(robot, executed, {{0, false}, {1, false}}, *plan.timing->motion).passed);
 }

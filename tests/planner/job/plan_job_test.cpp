@@ -65,18 +65,18 @@ Problem random_job(const JobCase& of, Random& random) {
   return job;
 }
 
-void expect_same(const JobResult& a, const JobResult& b, const std::string& what) {
+void expect_same(const Answer& a, const Answer& b, const std::string& what) {
   ASSERT_EQ(a.status, b.status) << what;
   ASSERT_EQ(a.cost, b.cost) << what;
   ASSERT_EQ(a.bound, b.bound) << what;
-  ASSERT_EQ(a.parts.size(), b.parts.size()) << what;
-  ASSERT_EQ(a.counters.fcl_calls, b.counters.fcl_calls) << what;
-  ASSERT_EQ(a.transitions.pairs, b.transitions.pairs) << what;
-  for (std::size_t k = 0; k < a.parts.size(); ++k) {
-    ASSERT_EQ(a.parts[k].run, b.parts[k].run) << what;
-    ASSERT_EQ(a.parts[k].rows.size(), b.parts[k].rows.size()) << what;
-    for (std::size_t i = 0; i < a.parts[k].rows.size(); ++i)
-      ASSERT_EQ(a.parts[k].rows[i].q, b.parts[k].rows[i].q) << what;
+  ASSERT_EQ(a.arm().parts.size(), b.arm().parts.size()) << what;
+  ASSERT_EQ(a.arm().counters.fcl_calls, b.arm().counters.fcl_calls) << what;
+  ASSERT_EQ(a.arm().transitions.pairs, b.arm().transitions.pairs) << what;
+  for (std::size_t k = 0; k < a.arm().parts.size(); ++k) {
+    ASSERT_EQ(a.arm().parts[k].run, b.arm().parts[k].run) << what;
+    ASSERT_EQ(a.arm().parts[k].rows.size(), b.arm().parts[k].rows.size()) << what;
+    for (std::size_t i = 0; i < a.arm().parts[k].rows.size(); ++i)
+      ASSERT_EQ(a.arm().parts[k].rows[i].q, b.arm().parts[k].rows[i].q) << what;
   }
 }
 
@@ -90,7 +90,7 @@ TEST(PlanJob, PassesItsCheckAndIsTheSameAtAnyThreadCount) {
     const Problem job = random_job(door, random);
     PlanOptions options;
     options.threads = 1;
-    const JobResult found = plan_job(door.robot, job, options);
+    const Answer found = plan_job(door.robot, job, options);
     for (const int threads : {2, 4}) {
       if (trial % 4 != 0) continue;
       options.threads = threads;
@@ -102,10 +102,10 @@ TEST(PlanJob, PassesItsCheckAndIsTheSameAtAnyThreadCount) {
     best += job.arm().order == StrokeOrder::kBest;
     ASSERT_LE(found.bound, found.cost) << what;
     ASSERT_LE(found.bound_any, found.bound) << what;
-    const JobCheckResult check = check_job(door.robot, job, found.parts);
+    const JobCheckResult check = check_job(door.robot, job, found.arm().parts);
     ASSERT_TRUE(check.passed) << what << ": " << check.failures.front();
     ASSERT_NEAR(check.cost, found.cost, 1e-6) << what;
-    for (const JobPart& part : found.parts) detours += !part.run && part.rows.size() > 2;
+    for (const Part& part : found.arm().parts) detours += !part.run && part.rows.size() > 2;
   }
   std::printf("%d jobs, %d solved, %d in the best order, %d transitions around obstacles\n", count,
               solved, best, detours);
@@ -146,15 +146,15 @@ TEST(PlanJob, WideJointsCostWhatTheirTurnsToldApartCost) {
             Quaterniond(Eigen::AngleAxisd(
                 turn * static_cast<double>(k) / static_cast<double>(parts), Vector3d::UnitZ()));
     }
-    std::array<JobResult, 2> found;
+    std::array<Answer, 2> found;
     std::array<int, 2> windings{};
     for (std::size_t apart = 0; apart < 2; ++apart) {
       // one stroke that moves joints by half a turn tells them apart in all
       for (Stroke& stroke : job.arm().strokes) stroke.limits.joint_step = 3.0;
       if (apart == 1) job.arm().strokes.back().limits.joint_step = 3.2;
       found[apart] = plan_job(job, {});
-      ASSERT_FALSE(found[apart].runs.empty()) << what;
-      windings[apart] = found[apart].runs[0].lattice.grid->windings;
+      ASSERT_FALSE(found[apart].arm().runs.empty()) << what;
+      windings[apart] = found[apart].arm().runs[0].lattice.grid->windings;
     }
     ASSERT_EQ(windings[1], 4) << what;
     ASSERT_EQ(found[0].status, found[1].status) << what;
@@ -169,7 +169,7 @@ TEST(PlanJob, WideJointsCostWhatTheirTurnsToldApartCost) {
 }
 
 /// Expects that a run's view has the rows of its part, but for whole turns, and knows their nodes.
-void expect_shows(const PlanView& view, const JobPart& part, const std::string& what) {
+void expect_shows(const PlanView& view, const Part& part, const std::string& what) {
   const std::vector<TrajectoryRow> rows = view.lattice.path_rows(view.path);
   ASSERT_EQ(rows.size(), part.rows.size()) << what;
   for (std::size_t i = 0; i < rows.size(); ++i)
@@ -188,17 +188,17 @@ TEST(PlanJob, ShowsWhatItFoundOutAboutRuns) {
     const std::string what = "trial " + std::to_string(trial);
     const Problem job = random_job(door, random);
     JobView view;
-    const JobResult found = plan_job(door.robot, job, {}, &view);
+    const Answer found = plan_job(door.robot, job, {}, &view);
     expect_same(found, plan_job(door.robot, job), what);
     if (HasFatalFailure()) return;
     if (view.runs.empty()) {
-      ASSERT_TRUE(found.no_transition) << what;
-      ASSERT_EQ(found.no_transition->where, NoTransition::Where::kHome) << what;
+      ASSERT_TRUE(found.arm().no_transition) << what;
+      ASSERT_EQ(found.arm().no_transition->where, NoTransition::Where::kHome) << what;
       continue;
     }
-    ASSERT_EQ(view.runs.size(), found.runs.size()) << what;
+    ASSERT_EQ(view.runs.size(), found.arm().runs.size()) << what;
     std::size_t run = 0;
-    for (const JobPart& part : found.parts)
+    for (const Part& part : found.arm().parts)
       if (part.run) expect_shows(view.runs[run++], part, what);
     if (HasFatalFailure()) return;
     solved += run > 0;
@@ -223,7 +223,7 @@ TEST(PlanJob, JobsOfTheDataFolderBecomeMotions) {
     ASSERT_TRUE(plan.timing && plan.timing->motion);
     EXPECT_EQ(plan.timing->motion->events.size(), 2 * job.arm().strokes.size());
     std::vector<StrokeRun> order;
-    for (const RunResult& run : plan.result.runs) order.push_back(run.run);
+    for (const RunAnswer& run : plan.result.arm().runs) order.push_back(run.run);
     const JobCheckResult check =
         check_job_motion(robot, job, order, *plan.timing->motion, {.margins = false});
     EXPECT_TRUE(check.passed) << check.failures.front();
@@ -244,9 +244,9 @@ TEST(PlanJob, TheBestOrderIsNoDearerThanTheGivenOne) {
       stroke.resolution.dphi = 0.1;
     }
     std::swap(job.arm().strokes[1], job.arm().strokes[4]);
-    const JobResult given = plan_job(door.robot, job, {});
+    const Answer given = plan_job(door.robot, job, {});
     job.arm().order = StrokeOrder::kBest;
-    const JobResult best = plan_job(door.robot, job, {});
+    const Answer best = plan_job(door.robot, job, {});
     if (given.status != PlanStatus::kSolved) continue;
     ASSERT_EQ(best.status, PlanStatus::kSolved);
     ++solved;
@@ -268,14 +268,14 @@ TEST(PlanJob, TriesOrdersWhereTheRollCosts) {
     stroke.limits.tool_path_error = 0.02;
   }
   job.arm().order = StrokeOrder::kGiven;
-  const JobResult given = plan_job(job);
+  const Answer given = plan_job(job);
   job.arm().order = StrokeOrder::kBest;
-  const JobResult best = plan_job(job);
+  const Answer best = plan_job(job);
   ASSERT_EQ(given.status, PlanStatus::kSolved);
   ASSERT_EQ(best.status, PlanStatus::kSolved);
   EXPECT_LE(best.cost, given.cost * (1 + 1e-12));
   const PreparedRobot robot(problem_of_run(job, {0, false}));
-  const JobCheckResult check = check_job(robot, job, best.parts);
+  const JobCheckResult check = check_job(robot, job, best.arm().parts);
   ASSERT_TRUE(check.passed) << check.failures.front();
   EXPECT_NEAR(check.cost, best.cost, 1e-9);
 }
@@ -342,13 +342,13 @@ TEST(PlanJob, TakesEveryClassOfArm) {
       ++solved;
       const Problem completed = with_motion_defaults(job);
       const JobCheckResult check =
-          check_job(robot, completed, plan.result.parts, {.margins = false});
+          check_job(robot, completed, plan.result.arm().parts, {.margins = false});
       ASSERT_TRUE(check.passed) << name << " trial " << trial << ": " << check.failures.front();
       ASSERT_TRUE(plan.timing) << name;
       if (!plan.timing->motion) continue;
       ++timed;
       std::vector<StrokeRun> order;
-      for (const RunResult& run : plan.result.runs) order.push_back(run.run);
+      for (const RunAnswer& run : plan.result.arm().runs) order.push_back(run.run);
       const JobCheckResult moved =
           check_job_motion(robot, job, order, *plan.timing->motion, {.margins = false});
       ASSERT_TRUE(moved.passed) << name << " trial " << trial << ": " << moved.failures.front();
@@ -364,13 +364,13 @@ TEST(PlanJob, ADeadlineEndsItWithWhatIsKnown) {
   for (const double timeout : {1e-4, 2e-3, 2e-2, 5e-2}) {
     PlanOptions options;
     options.timeout_s = timeout;
-    const JobResult found = plan_job(door.robot, door.job, options);
+    const Answer found = plan_job(door.robot, door.job, options);
     if (found.status != PlanStatus::kSolved) {
       EXPECT_EQ(found.status, PlanStatus::kTimeout);
     }
-    if (found.parts.empty()) continue;
+    if (found.arm().parts.empty()) continue;
     EXPECT_LE(found.bound, found.cost);
-    EXPECT_TRUE(check_job(door.robot, door.job, found.parts).passed);
+    EXPECT_TRUE(check_job(door.robot, door.job, found.arm().parts).passed);
   }
 }
 
@@ -379,12 +379,12 @@ TEST(PlanJob, TellsWhichStrokeHasNoPath) {
   Problem job = door.job;
   for (Waypoint& waypoint : job.arm().strokes[3].waypoints)
     waypoint.position.y() += 2;  // out of reach
-  const JobResult found = plan_job(door.robot, job, {});
+  const Answer found = plan_job(door.robot, job, {});
   ASSERT_EQ(found.status, PlanStatus::kInfeasible);
-  ASSERT_EQ(found.runs.size(), job.arm().strokes.size());
-  for (std::size_t k = 0; k < found.runs.size(); ++k) {
-    EXPECT_EQ(found.runs[k].status, k == 3 ? PlanStatus::kInfeasible : PlanStatus::kSolved);
-    EXPECT_EQ(found.runs[k].diagnosis.has_value(), k == 3);
+  ASSERT_EQ(found.arm().runs.size(), job.arm().strokes.size());
+  for (std::size_t k = 0; k < found.arm().runs.size(); ++k) {
+    EXPECT_EQ(found.arm().runs[k].status, k == 3 ? PlanStatus::kInfeasible : PlanStatus::kSolved);
+    EXPECT_EQ(found.arm().runs[k].diagnosis.has_value(), k == 3);
   }
 }
 
@@ -430,7 +430,7 @@ void expect_executable(const JobCase& of, const Problem& job, const JobMotionPla
   for (std::size_t k = 0; k < motion.events.size(); ++k) {
     const ProcessEvent& event = motion.events[k];
     ASSERT_EQ(event.on, k % 2 == 0) << what;
-    const StrokeRun run = plan.result.runs[k / 2].run;
+    const StrokeRun run = plan.result.arm().runs[k / 2].run;
     ASSERT_EQ(event.stroke, run.stroke) << what;
     // the tool is at the stroke's end within one sample
     const auto row = static_cast<std::size_t>(std::llround(event.t * motion.rate));
@@ -463,7 +463,7 @@ TEST(JobMotion, KeepsRatesClearancesAndEvents) {
       expect_executable(*of, job, plan, what);
       if (HasFatalFailure()) return;
       std::vector<StrokeRun> order;
-      for (const RunResult& run : plan.result.runs) order.push_back(run.run);
+      for (const RunAnswer& run : plan.result.arm().runs) order.push_back(run.run);
       const JobCheckResult check = check_job_motion(of->robot, job, order, *plan.timing->motion);
       ASSERT_TRUE(check.passed) << what << ": " << check.failures.front();
     }
@@ -478,18 +478,18 @@ TEST(JobMotion, StrokesThatMeetAreTimed) {
   Problem job = door.job;
   job.arm().home.reset();
   job.arm().strokes.resize(1);
-  JobResult there = plan_job(door.robot, with_motion_defaults(job));
-  ASSERT_EQ(there.parts.size(), 1u);
+  Answer there = plan_job(door.robot, with_motion_defaults(job));
+  ASSERT_EQ(there.arm().parts.size(), 1u);
   job.arm().strokes.push_back(job.arm().strokes.front());
   std::vector<Waypoint>& waypoints = job.arm().strokes[1].waypoints;
   std::reverse(waypoints.begin(), waypoints.end());
   job.arm().strokes[1].name = "back";
-  JobPart back = there.parts[0], rest;
+  Part back = there.arm().parts[0], rest;
   back.run = StrokeRun{1, false};
   std::reverse(back.rows.begin(), back.rows.end());
-  for (TrajectoryRow& row : back.rows) row.s = there.parts[0].rows.back().s - row.s;
+  for (TrajectoryRow& row : back.rows) row.s = there.arm().parts[0].rows.back().s - row.s;
   rest.rows = {back.rows.front(), back.rows.front()};
-  const std::vector<JobPart> parts{there.parts[0], rest, back};
+  const std::vector<Part> parts{there.arm().parts[0], rest, back};
   const JobTimingResult timed = time_job(door.robot, job, parts, {});
   ASSERT_TRUE(timed.motion);
   EXPECT_EQ(std::count(timed.motion->part.begin(), timed.motion->part.end(), 1), 1);
@@ -514,14 +514,13 @@ TEST(JobMotion, SpeedsAreStatedBeforePlanning) {
 }
 
 /// A way to spoil a job's answer, by a random amount.
-using Spoil = std::function<void(std::vector<JobPart>&, Random&)>;
+using Spoil = std::function<void(std::vector<Part>&, Random&)>;
 using Ways = std::vector<std::pair<const char*, Spoil>>;
 
 /// Returns a random part: a run or a transition.
-JobPart& random_part(std::vector<JobPart>& parts, bool run, Random& random) {
+Part& random_part(std::vector<Part>& parts, bool run, Random& random) {
   for (;;)
-    if (JobPart& part =
-            parts[static_cast<std::size_t>(random.below(static_cast<int>(parts.size())))];
+    if (Part& part = parts[static_cast<std::size_t>(random.below(static_cast<int>(parts.size())))];
         part.run.has_value() == run)
       return part;
 }
@@ -530,12 +529,12 @@ JobPart& random_part(std::vector<JobPart>& parts, bool run, Random& random) {
 Ways ways_to_spoil_rows() {
   return {{"the retract is missing",
            [](auto& parts, Random& random) {
-             JobPart& part = random_part(parts, true, random);
+             Part& part = random_part(parts, true, random);
              part.rows.resize(part.rows.size() - 1 - static_cast<std::size_t>(random.below(3)));
            }},
           {"the approach is missing",
            [](auto& parts, Random& random) {
-             JobPart& part = random_part(parts, true, random);
+             Part& part = random_part(parts, true, random);
              part.rows.erase(part.rows.begin(), part.rows.begin() + 1 + random.below(3));
            }},
           {"a transition ends elsewhere",
@@ -550,13 +549,13 @@ Ways ways_to_spoil_rows() {
            }},
           {"a transition leads out of the joints' limits",
            [](auto& parts, Random& random) {
-             JobPart& part = random_part(parts, false, random);
+             Part& part = random_part(parts, false, random);
              TrajectoryRow row = part.rows.front();
              row.q[random.below(6)] += random.coin() ? 7 : -7;
              part.rows.insert(part.rows.begin() + 1, row);
            }},
           {"a stroke jumps", [](auto& parts, Random& random) {
-             JobPart& part = random_part(parts, true, random);
+             Part& part = random_part(parts, true, random);
              const auto row =
                  static_cast<std::size_t>(random.below(static_cast<int>(part.rows.size())));
              part.rows[row].q[random.below(6)] += 0.01;
@@ -577,12 +576,12 @@ Ways ways_to_spoil_parts() {
            }},
           {"a stroke is said to be another",
            [](auto& parts, Random& random) {
-             JobPart& part = random_part(parts, true, random);
+             Part& part = random_part(parts, true, random);
              part.run->stroke = (part.run->stroke + 1) % 3;
            }},
           {"a stroke runs backwards",
            [](auto& parts, Random& random) {
-             JobPart& part = random_part(parts, true, random);
+             Part& part = random_part(parts, true, random);
              part.run->reversed = true;
              std::reverse(part.rows.begin(), part.rows.end());
            }},
@@ -601,16 +600,16 @@ TEST(CheckJob, RefusesSpoiltAnswers) {
     stroke.resolution.ds = 0.02;
     stroke.resolution.dphi = 0.1;
   }
-  const JobResult found = plan_job(door.robot, job, {});
+  const Answer found = plan_job(door.robot, job, {});
   ASSERT_EQ(found.status, PlanStatus::kSolved);
-  ASSERT_TRUE(check_job(door.robot, job, found.parts).passed);
+  ASSERT_TRUE(check_job(door.robot, job, found.arm().parts).passed);
   int refused = 0;
   Ways ways = ways_to_spoil_rows();
   for (const auto& way : ways_to_spoil_parts()) ways.push_back(way);
   const int count = trials(330);
   for (int trial = 0; trial < count; ++trial) {
     const auto& [name, spoil] = ways[static_cast<std::size_t>(trial) % ways.size()];
-    std::vector<JobPart> parts = found.parts;
+    std::vector<Part> parts = found.arm().parts;
     spoil(parts, random);
     const JobCheckResult check = check_job(door.robot, job, parts, {.margins = false});
     EXPECT_FALSE(check.passed) << "trial " << trial << ": " << name;
@@ -628,7 +627,7 @@ TEST(CheckJob, RefusesEventsThatLie) {
   const JobMotionPlan plan = plan_job_motion(door.robot, job, {}, {});
   ASSERT_TRUE(plan.timing && plan.timing->motion);
   std::vector<StrokeRun> order;
-  for (const RunResult& run : plan.result.runs) order.push_back(run.run);
+  for (const RunAnswer& run : plan.result.arm().runs) order.push_back(run.run);
   const auto passes = [&](const JobMotion& motion) {
     return check_job_motion(door.robot, job, order, motion, {.margins = false}).passed;
   };
@@ -665,10 +664,10 @@ TEST(CheckJob, HoldsTheProcessAgainstTheStroke) {
     stroke.resolution.ds = 0.02;
     stroke.resolution.dphi = 0.1;
   }
-  const std::vector<JobPart> parts = plan_job(door.robot, job, {}).parts;
+  const std::vector<Part> parts = plan_job(door.robot, job, {}).arm().parts;
   ASSERT_EQ(parts.size(), 7u);
   std::vector<std::vector<bool>> process;
-  for (const JobPart& part : parts) process.push_back(process_of_rows(part, job));
+  for (const Part& part : parts) process.push_back(process_of_rows(part, job));
   const auto failures = [&](const std::vector<std::vector<bool>>& said) {
     JobCheckResult result;
     result.passed = true;
@@ -721,7 +720,7 @@ TEST(CheckJob, FindsTheDirectionsOfRunsInMotions) {
     ASSERT_TRUE(plan.timing && plan.timing->motion);
     std::vector<StrokeRun> order;
     std::vector<std::size_t> strokes;
-    for (const RunResult& run : plan.result.runs) {
+    for (const RunAnswer& run : plan.result.arm().runs) {
       order.push_back(run.run);
       strokes.push_back(run.run.stroke);
       backwards += run.run.reversed;

@@ -44,7 +44,7 @@ TEST(ProcessRange, BeginsAtTheFirstWaypointWhereTheApproachGoesOnIntoTheStroke) 
   const PreparedRobot robot(problem_of_run(job, {0, false}));
   const JobMotionPlan plan = plan_job_motion(robot, job, {}, {});
   ASSERT_EQ(plan.result.status, PlanStatus::kSolved);
-  for (const JobPart& part : plan.result.parts) {
+  for (const Part& part : plan.result.arm().parts) {
     if (!part.run) continue;
     const std::vector<bool> process = process_of_rows(part, job);
     const auto on = std::find(process.begin(), process.end(), true);

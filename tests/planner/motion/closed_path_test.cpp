@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "diagnosis_of.hpp"
 #include "motion_problem.hpp"
 #include "planners.hpp"
 #include "rings.hpp"
@@ -84,12 +85,12 @@ void check_ring(const RingArm& arm, const PathProblem& problem, const std::strin
     ASSERT_EQ(result.trajectory.size(), first.trajectory.size()) << who;
     for (std::size_t i = 0; i < result.trajectory.size(); ++i)
       ASSERT_EQ(result.trajectory[i].q, first.trajectory[i].q) << who << " row " << i;
-    ASSERT_EQ(result.diagnosis.reached_layer, first.diagnosis.reached_layer) << who;
-    ASSERT_EQ(result.diagnosis.cause, first.diagnosis.cause) << who;
+    ASSERT_EQ(diagnosis_of(result).reached_layer, diagnosis_of(first).reached_layer) << who;
+    ASSERT_EQ(diagnosis_of(result).cause, diagnosis_of(first).cause) << who;
   }
   counts.obstacles += !problem.scene.empty();
   if (truth.start < 0) {
-    ASSERT_EQ(results[0].diagnosis.cause.kind == Cause::Kind::kNotClosed, truth.open.solved)
+    ASSERT_EQ(diagnosis_of(results[0]).cause.kind == Cause::Kind::kNotClosed, truth.open.solved)
         << what;
     ++(truth.open.solved ? counts.open_only : counts.none);
     return;

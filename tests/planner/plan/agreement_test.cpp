@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "brute_force.hpp"
+#include "diagnosis_of.hpp"
 #include "planners.hpp"
 #include "random_problem.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
@@ -20,7 +21,7 @@ namespace {
 
 using namespace test;
 
-Answer truth_of(const PathProblem& problem) {
+BruteForcePath truth_of(const PathProblem& problem) {
   const PreparedRobot robot(problem);
   const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
   const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem);
@@ -38,21 +39,23 @@ void expect_same(const PlanResult& a, const PlanResult& b, const std::string& wh
     ASSERT_EQ(a.trajectory[i].branch, b.trajectory[i].branch) << what;
     ASSERT_EQ(a.trajectory[i].phi, b.trajectory[i].phi) << what;
   }
-  ASSERT_EQ(a.diagnosis.reached_layer, b.diagnosis.reached_layer) << what;
-  ASSERT_EQ(words(a.diagnosis.cause), words(b.diagnosis.cause)) << what;
-  ASSERT_EQ(a.diagnosis.without_it, b.diagnosis.without_it) << what;
-  ASSERT_EQ(a.diagnosis.together.size(), b.diagnosis.together.size()) << what;
-  ASSERT_EQ(a.diagnosis.removed.size(), b.diagnosis.removed.size()) << what;
-  for (std::size_t k = 0; k < a.diagnosis.removed.size(); ++k) {
-    ASSERT_EQ(words(a.diagnosis.removed[k].cause), words(b.diagnosis.removed[k].cause)) << what;
-    ASSERT_EQ(a.diagnosis.removed[k].count, b.diagnosis.removed[k].count) << what;
+  ASSERT_EQ(diagnosis_of(a).reached_layer, diagnosis_of(b).reached_layer) << what;
+  ASSERT_EQ(words(diagnosis_of(a).cause), words(diagnosis_of(b).cause)) << what;
+  ASSERT_EQ(diagnosis_of(a).without_it, diagnosis_of(b).without_it) << what;
+  ASSERT_EQ(diagnosis_of(a).together.size(), diagnosis_of(b).together.size()) << what;
+  ASSERT_EQ(diagnosis_of(a).removed.size(), diagnosis_of(b).removed.size()) << what;
+  for (std::size_t k = 0; k < diagnosis_of(a).removed.size(); ++k) {
+    ASSERT_EQ(words(diagnosis_of(a).removed[k].cause), words(diagnosis_of(b).removed[k].cause))
+        << what;
+    ASSERT_EQ(diagnosis_of(a).removed[k].count, diagnosis_of(b).removed[k].count) << what;
   }
-  ASSERT_EQ(a.diagnosis.complete, b.diagnosis.complete) << what;
-  ASSERT_EQ(a.diagnosis.empty_layers.size(), b.diagnosis.empty_layers.size()) << what;
-  for (std::size_t k = 0; k < a.diagnosis.empty_layers.size(); ++k) {
-    ASSERT_EQ(a.diagnosis.empty_layers[k].first, b.diagnosis.empty_layers[k].first) << what;
-    ASSERT_EQ(a.diagnosis.empty_layers[k].last, b.diagnosis.empty_layers[k].last) << what;
-    ASSERT_TRUE(a.diagnosis.empty_layers[k].cause.same_thing(b.diagnosis.empty_layers[k].cause))
+  ASSERT_EQ(diagnosis_of(a).complete, diagnosis_of(b).complete) << what;
+  ASSERT_EQ(diagnosis_of(a).empty_layers.size(), diagnosis_of(b).empty_layers.size()) << what;
+  for (std::size_t k = 0; k < diagnosis_of(a).empty_layers.size(); ++k) {
+    ASSERT_EQ(diagnosis_of(a).empty_layers[k].first, diagnosis_of(b).empty_layers[k].first) << what;
+    ASSERT_EQ(diagnosis_of(a).empty_layers[k].last, diagnosis_of(b).empty_layers[k].last) << what;
+    ASSERT_TRUE(
+        diagnosis_of(a).empty_layers[k].cause.same_thing(diagnosis_of(b).empty_layers[k].cause))
         << what;
   }
 }
@@ -74,8 +77,9 @@ std::vector<PlanResult> plan_with_all(const PathProblem& problem) {
 }
 
 /// Expects the path of least cost that brute force finds, and that it passes the check.
-void expect_true_path(const PathProblem& problem, const PlanResult& result, const Answer& truth,
-                      const std::string& what, AgreementCounts& counts) {
+void expect_true_path(const PathProblem& problem, const PlanResult& result,
+                      const BruteForcePath& truth, const std::string& what,
+                      AgreementCounts& counts) {
   counts.chosen += truth.chosen;
   ASSERT_EQ(result.lattice.cost, truth.cost) << what;
   const PreparedRobot robot(problem);
@@ -97,8 +101,8 @@ void expect_true_path(const PathProblem& problem, const PlanResult& result, cons
 
 /// Expects the layers that brute force finds to be reached and to be empty. `may_be_incomplete`
 /// allows a diagnosis that ends before it has asked about every layer.
-void expect_true_diagnosis(const Diagnosis& diagnosis, const Answer& truth, bool may_be_incomplete,
-                           const std::string& what) {
+void expect_true_diagnosis(const Diagnosis& diagnosis, const BruteForcePath& truth,
+                           bool may_be_incomplete, const std::string& what) {
   ASSERT_EQ(diagnosis.reached_layer.value_or(-1), truth.deepest) << what;
   ASSERT_FALSE(words(diagnosis.cause).empty()) << what;
   ASSERT_TRUE(diagnosis.complete || may_be_incomplete) << what;
@@ -112,7 +116,7 @@ void expect_true_diagnosis(const Diagnosis& diagnosis, const Answer& truth, bool
 /// Compares the answers of all planners to one problem with each other and with brute force.
 void check_agreement(const PathProblem& problem, bool near_by_design, const std::string& what,
                      AgreementCounts& counts) {
-  const Answer truth = truth_of(problem);
+  const BruteForcePath truth = truth_of(problem);
   const std::vector<PlanResult> results = plan_with_all(problem);
   const auto& lazy = results[2].counters;
   counts.proved += lazy.proved_free + lazy.proved_colliding;
@@ -137,7 +141,7 @@ void check_agreement(const PathProblem& problem, bool near_by_design, const std:
     ++counts.infeasible;
     // Pairs that are near by design cost questions, of which a diagnosis asks so many and no
     // more.
-    expect_true_diagnosis(results[0].diagnosis, truth, near_by_design, what);
+    expect_true_diagnosis(diagnosis_of(results[0]), truth, near_by_design, what);
   }
 }
 
@@ -319,7 +323,7 @@ TEST(Agreement, FourPlannersAndBruteForceAtWeightsOfAnySize) {
     const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
                              std::to_string(trial) + " robot " + problem.source + " kind " +
                              std::to_string(kind);
-    const Answer truth = truth_of(problem);
+    const BruteForcePath truth = truth_of(problem);
     (truth.solved ? solved : infeasible)[kind] += 1;
     std::vector<PlanResult> results;
     for (const PlannerKind planner : kPlanners) {
@@ -334,7 +338,7 @@ TEST(Agreement, FourPlannersAndBruteForceAtWeightsOfAnySize) {
       if (HasFatalFailure()) return;
     }
     if (!truth.solved) {
-      ASSERT_EQ(results[0].diagnosis.reached_layer.value_or(-1), truth.deepest) << what;
+      ASSERT_EQ(diagnosis_of(results[0]).reached_layer.value_or(-1), truth.deepest) << what;
       continue;
     }
     ASSERT_EQ(results[0].lattice.cost, truth.cost) << what;
@@ -394,7 +398,7 @@ SliverCase random_sliver_case(bool wide, Random& random) {
 }
 
 /// Compares all planners with brute force, and expects a warning where a range is too wide.
-void check_slivers(const PathProblem& problem, const Answer& truth, bool wide,
+void check_slivers(const PathProblem& problem, const BruteForcePath& truth, bool wide,
                    const std::string& what) {
   const PreparedRobot robot(problem);
   const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
@@ -433,7 +437,7 @@ TEST(Agreement, FourPlannersAndBruteForceWhereRangesEndInSlivers) {
     const bool wide = trial % 3 == 0;
     const SliverCase drawn = random_sliver_case(wide, random);
     in_sliver += drawn.in_sliver;
-    const Answer truth = truth_of(drawn.problem);
+    const BruteForcePath truth = truth_of(drawn.problem);
     (truth.solved ? solved : infeasible) += 1;
     check_slivers(drawn.problem, truth, wide,
                   "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial));

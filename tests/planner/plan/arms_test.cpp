@@ -10,6 +10,7 @@
 
 #include "axes_robots.hpp"
 #include "brute_force.hpp"
+#include "diagnosis_of.hpp"
 #include "motion_problem.hpp"
 #include "planners.hpp"
 #include "random_problem.hpp"
@@ -76,8 +77,9 @@ struct ArmsCounts {
 
 /// Plans the problem with every planner, expects the same answer of each and the verdict of brute
 /// force, and appends the results in the order of kPlanners.
-void plan_with_all(const PreparedRobot& robot, const PathProblem& problem, const Answer& truth,
-                   const std::string& what, std::vector<PlanResult>& results) {
+void plan_with_all(const PreparedRobot& robot, const PathProblem& problem,
+                   const BruteForcePath& truth, const std::string& what,
+                   std::vector<PlanResult>& results) {
   for (const PlannerKind planner : kPlanners) {
     results.push_back(plan(robot, problem, with_all_evidence(planner)));
     const PlanResult& result = results.back();
@@ -89,9 +91,10 @@ void plan_with_all(const PreparedRobot& robot, const PathProblem& problem, const
     for (std::size_t i = 0; i < result.trajectory.size(); ++i)
       ASSERT_EQ(result.trajectory[i].q, results[0].trajectory[i].q)
           << what << ' ' << result.planner << " row " << i;
-    ASSERT_EQ(result.diagnosis.reached_layer, results[0].diagnosis.reached_layer)
+    ASSERT_EQ(diagnosis_of(result).reached_layer, diagnosis_of(results[0]).reached_layer)
         << what << ' ' << result.planner;
-    ASSERT_EQ(result.diagnosis.cause, results[0].diagnosis.cause) << what << ' ' << result.planner;
+    ASSERT_EQ(diagnosis_of(result).cause, diagnosis_of(results[0]).cause)
+        << what << ' ' << result.planner;
     ASSERT_EQ(result.partial.size(), results[0].partial.size()) << what << ' ' << result.planner;
   }
 }
@@ -99,7 +102,7 @@ void plan_with_all(const PreparedRobot& robot, const PathProblem& problem, const
 /// Expects the path of least cost that brute force finds on the lattice, and that it passes the
 /// check.
 void expect_true_path(const PreparedRobot& robot, const PathProblem& problem,
-                      const Lattice& lattice, const Answer& truth, const PlanResult& result,
+                      const Lattice& lattice, const BruteForcePath& truth, const PlanResult& result,
                       const std::string& what) {
   const Chain& chain = robot.arm().chain;
   ASSERT_EQ(result.lattice.cost, truth.cost) << what;
@@ -126,7 +129,7 @@ void check_agreement(const PathProblem& problem, const std::string& what, ArmsCo
   const ArcLattice circles(chain, robot.arm_class().lock, path, problem);
   const std::unique_ptr<Lattice> turns_apart = circles.with_windings(circles.circles());
   const EdgeRule rule = robot.world().edge_rule(robot.radii());
-  const Answer truth =
+  const BruteForcePath truth =
       brute_force(*turns_apart, robot.world(), rule, [](int, int, int) { return true; });
 
   std::vector<PlanResult> results;
@@ -137,8 +140,8 @@ void check_agreement(const PathProblem& problem, const std::string& what, ArmsCo
   counts.obstacles += !problem.scene.empty();
   if (!truth.solved) {
     ++counts.infeasible;
-    ASSERT_GE(results[0].diagnosis.reached_layer.value_or(-1), truth.deepest) << what;
-    ASSERT_FALSE(words(results[0].diagnosis.cause).empty()) << what;
+    ASSERT_GE(diagnosis_of(results[0]).reached_layer.value_or(-1), truth.deepest) << what;
+    ASSERT_FALSE(words(diagnosis_of(results[0]).cause).empty()) << what;
     return;
   }
   ++counts.solved;
@@ -414,8 +417,8 @@ RollCostCase random_roll_cost_case(const char* name, const Roll& roll, Random& r
 }
 
 /// Finds the answer by brute force, where the roll turns no faster than `roll_slope` allows.
-Answer truth_of(const PreparedRobot& robot, const PathProblem& problem, const ToolPath& path,
-                const Lattice& lattice, const Hooks& hooks) {
+BruteForcePath truth_of(const PreparedRobot& robot, const PathProblem& problem,
+                        const ToolPath& path, const Lattice& lattice, const Hooks& hooks) {
   const auto turns_slowly = [&](int layer, int a, int b) {
     const double most_turn = roll_step_bound(path, layer, problem.limits, problem.resolution);
     return std::abs(std::remainder((*lattice.node(layer + 1, b))[6] - (*lattice.node(layer, a))[6],
@@ -428,7 +431,7 @@ Answer truth_of(const PreparedRobot& robot, const PathProblem& problem, const To
 /// Plans the problem with every planner, expects the answer of brute force of each, and sets
 /// `first` to the first planner's result where there is a path.
 void plan_as_brute_force(const PreparedRobot& robot, const PathProblem& problem, const Hooks& hooks,
-                         const Answer& truth, const std::string& what,
+                         const BruteForcePath& truth, const std::string& what,
                          std::optional<PlanResult>& first) {
   for (const PlannerKind planner : kPlanners) {
     PlanOptions options;
@@ -489,7 +492,7 @@ void check_roll_cost(const RollCostCase& drawn, const std::string& what, RollCou
   const ToolPath path = problem_path(problem, chain);
   const ArcLattice circles(chain, robot.arm_class().lock, path, problem);
   const std::unique_ptr<Lattice> turns_apart = circles.with_windings(circles.circles());
-  const Answer truth = truth_of(robot, problem, path, *turns_apart, drawn.hooks);
+  const BruteForcePath truth = truth_of(robot, problem, path, *turns_apart, drawn.hooks);
   std::optional<PlanResult> first;
   plan_as_brute_force(robot, problem, drawn.hooks, truth, what, first);
   if (::testing::Test::HasFatalFailure()) return;

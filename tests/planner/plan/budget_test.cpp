@@ -12,6 +12,7 @@
 
 #include "cost_to_go/grid/chord_lower_bound.hpp"
 #include "diagnosis/diagnosis.hpp"
+#include "diagnosis_of.hpp"
 #include "random_problem.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/graph/eager/eager.hpp"
@@ -217,7 +218,7 @@ TEST(Budget, APlanStopsInTheStageThatItIsIn) {
         EXPECT_EQ(result.cost, whole.cost) << what;
         EXPECT_EQ(result.trajectory.size(), whole.trajectory.size()) << what;
         EXPECT_TRUE(!result.evidence.postures || last_step) << what;
-        EXPECT_TRUE(whole.status == PlanStatus::kSolved || !result.diagnosis.complete) << what;
+        EXPECT_TRUE(whole.status == PlanStatus::kSolved || !diagnosis_of(result).complete) << what;
       }
       options.cancel = nullptr;
     }
@@ -249,13 +250,13 @@ TEST(Budget, NothingIsWorkedOutThatWasNotAskedFor) {
   blocked.resolution = {.ds = 0.02, .dphi = 0.2};
   const PlanResult cause = plan(blocked), evidence = plan(blocked, options);
   ASSERT_EQ(cause.status, PlanStatus::kInfeasible);
-  EXPECT_EQ(words(cause.diagnosis.cause), words(evidence.diagnosis.cause));
-  EXPECT_EQ(cause.diagnosis.reached_layer, evidence.diagnosis.reached_layer);
-  EXPECT_TRUE(cause.diagnosis.complete);
-  EXPECT_TRUE(cause.diagnosis.empty_layers.empty());
-  EXPECT_TRUE(cause.diagnosis.removed.empty());
-  EXPECT_FALSE(evidence.diagnosis.empty_layers.empty());
-  EXPECT_FALSE(evidence.diagnosis.removed.empty());
+  EXPECT_EQ(words(diagnosis_of(cause).cause), words(diagnosis_of(evidence).cause));
+  EXPECT_EQ(diagnosis_of(cause).reached_layer, diagnosis_of(evidence).reached_layer);
+  EXPECT_TRUE(diagnosis_of(cause).complete);
+  EXPECT_TRUE(diagnosis_of(cause).empty_layers.empty());
+  EXPECT_TRUE(diagnosis_of(cause).removed.empty());
+  EXPECT_FALSE(diagnosis_of(evidence).empty_layers.empty());
+  EXPECT_FALSE(diagnosis_of(evidence).removed.empty());
 }
 
 /// Large allocations, long loops and destructors between the polls are what could make a stop late.

@@ -98,7 +98,7 @@ TEST(CartesianPath, FractionIsOneWhereThereIsAPlanAndElseThePartIsValid) {
         for (std::size_t i = 0; i < path.rows.size(); ++i)
           ASSERT_EQ(path.rows[i].q, plan.trajectory[i].q) << name << ' ' << k << ' ' << i;
       } else {
-        const int reached = plan.diagnosis.reached_layer.value_or(0);
+        const int reached = plan.diagnosis->reached_layer.value_or(0);
         ASSERT_EQ(path.fraction, static_cast<double>(reached) / (plan.lattice.layers - 1));
         ASSERT_EQ(path.rows.size(), plan.partial.size());
         ++(path.rows.size() < 2 ? nothing : part);

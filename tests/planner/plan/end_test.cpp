@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "brute_force.hpp"
+#include "diagnosis_of.hpp"
 #include "inexact_robots.hpp"
 #include "motion_problem.hpp"
 #include "planners.hpp"
@@ -166,7 +167,7 @@ PathProblem ending_problem(const EndArm& arm, Random& random) {
 /// A lattice that tells everything apart, and its answer by brute force.
 struct Truth {
   std::unique_ptr<const Lattice> lattice;
-  Answer answer;
+  BruteForcePath answer;
 };
 
 /// Says by the definition whether nodes of a lattice of rolls may be joined on the last step, which
@@ -292,8 +293,8 @@ void check_end(const EndArm& arm, const PathProblem& problem, const std::string&
     ASSERT_EQ(result.trajectory.size(), first.trajectory.size()) << who;
     for (std::size_t i = 0; i < result.trajectory.size(); ++i)
       ASSERT_EQ(result.trajectory[i].q, first.trajectory[i].q) << who << " row " << i;
-    ASSERT_EQ(result.diagnosis.reached_layer, first.diagnosis.reached_layer) << who;
-    ASSERT_EQ(result.diagnosis.cause, first.diagnosis.cause) << who;
+    ASSERT_EQ(diagnosis_of(result).reached_layer, diagnosis_of(first).reached_layer) << who;
+    ASSERT_EQ(diagnosis_of(result).cause, diagnosis_of(first).cause) << who;
   }
   counts.started += problem.start.has_value();
   counts.obstacles += !problem.scene.empty();
@@ -306,8 +307,8 @@ void check_end(const EndArm& arm, const PathProblem& problem, const std::string&
     return;
   }
   ++counts.infeasible, ++counts.infeasible_by_kind[kind];
-  ASSERT_GE(results[0].diagnosis.reached_layer.value_or(-1), truth.answer.deepest) << what;
-  ASSERT_FALSE(words(results[0].diagnosis.cause).empty()) << what;
+  ASSERT_GE(diagnosis_of(results[0]).reached_layer.value_or(-1), truth.answer.deepest) << what;
+  ASSERT_FALSE(words(diagnosis_of(results[0]).cause).empty()) << what;
   if (arm.nodes != Nodes::kRolls) expect_certified(robot, problem, what, counts);
 }
 
@@ -459,9 +460,9 @@ TEST(End, ARingThatEndsInItsStartCanBeRepeated) {
 }
 
 /// Returns the last rows of a job's runs, by stroke.
-std::vector<Config> ends_of(const JobResult& result, std::size_t strokes) {
+std::vector<Config> ends_of(const Answer& result, std::size_t strokes) {
   std::vector<Config> ends(strokes, Config::Zero());
-  for (const JobPart& part : result.parts)
+  for (const Part& part : result.arm().parts)
     if (part.run) ends[part.run->stroke] = part.rows.back().q;
   return ends;
 }
@@ -478,16 +479,16 @@ TEST(End, StrokesOfAJobEndThere) {
       stroke.resolution.dphi *= 1.3;
       stroke.resolution.arc *= 0.7;
     }
-    const JobResult first = plan_job(robot, elsewhere);
+    const Answer first = plan_job(robot, elsewhere);
     ASSERT_EQ(first.status, PlanStatus::kSolved) << name;
     const std::vector<Config> wanted = ends_of(first, job.arm().strokes.size());
     for (std::size_t k = 0; k < wanted.size(); k += 2) {
       job.arm().strokes[k].end = wanted[k];
       job.arm().strokes[k].reversible = false;
     }
-    const JobResult found = plan_job(robot, job);
+    const Answer found = plan_job(robot, job);
     ASSERT_EQ(found.status, PlanStatus::kSolved) << name;
-    const JobCheckResult check = check_job(robot, job, found.parts);
+    const JobCheckResult check = check_job(robot, job, found.arm().parts);
     ASSERT_TRUE(check.passed) << name << ": " << check.failures.front();
     const std::vector<Config> ends = ends_of(found, job.arm().strokes.size());
     for (std::size_t k = 0; k < ends.size(); k += 2)
@@ -497,7 +498,7 @@ TEST(End, StrokesOfAJobEndThere) {
         EXPECT_NEAR(bounded ? off : std::remainder(off, kTwoPi), 0, 1e-9) << name << ' ' << j;
       }
     (*job.arm().strokes[0].end)[1] += 1e-5;
-    EXPECT_FALSE(check_job(robot, job, found.parts).passed) << name;
+    EXPECT_FALSE(check_job(robot, job, found.arm().parts).passed) << name;
     EXPECT_THROW(static_cast<void>(plan_job(robot, job)), InputError) << name;
     job.arm().strokes[0].reversible = true;
     EXPECT_THROW(static_cast<void>(plan_job(robot, job)), InvalidArgument) << name;
@@ -520,8 +521,8 @@ TEST(End, APostureInCollisionIsToldAndAFreeEndIsAdvised) {
   Planner planner(problem);
   const PlanResult result = planner.plan();
   ASSERT_EQ(result.status, PlanStatus::kInfeasible);
-  EXPECT_EQ(result.diagnosis.cause.bodies[1], "ball");
-  EXPECT_EQ(result.diagnosis.reached_layer, result.lattice.layers - 2);
+  EXPECT_EQ(diagnosis_of(result).cause.bodies[1], "ball");
+  EXPECT_EQ(diagnosis_of(result).reached_layer, result.lattice.layers - 2);
   const std::vector<Advice> advice = advise(planner, result);
   const auto freed = std::find_if(advice.begin(), advice.end(), [](const Advice& one) {
     return one.change == Advice::Change::kFreeEnd;

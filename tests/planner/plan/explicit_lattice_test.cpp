@@ -108,7 +108,7 @@ struct EverySearch {
   const World& world;
   EdgeRule rule;
   EdgeMode edges;
-  Answer truth;
+  BruteForcePath truth;
   std::string what;
   Executor executor{1};
   Budget never;
@@ -212,7 +212,8 @@ TEST(ExplicitLattice, WithoutTheCauseThatIsNamedPathsGoOn) {
       const ExplicitLattice lattice(arm.chain, path, posed, points);
       const World world(*posed.model, arm, posed);
       const EdgeRule rule = world.edge_rule(motion_radii(arm.chain, world.bodies()));
-      const Answer truth = brute_force(lattice, world, rule, [](int, int, int) { return true; });
+      const BruteForcePath truth =
+          brute_force(lattice, world, rule, [](int, int, int) { return true; });
       if (diagnosis != nullptr && !truth.solved)
         diagnose(
             lattice, world, rule,
@@ -227,7 +228,7 @@ TEST(ExplicitLattice, WithoutTheCauseThatIsNamedPathsGoOn) {
     if (!diagnosis.without_it) continue;
     const auto relaxed = without(diagnosis.cause, problem);
     ASSERT_TRUE(relaxed.has_value()) << what;
-    const Answer after = truth_of(*relaxed, nullptr);
+    const BruteForcePath after = truth_of(*relaxed, nullptr);
     EXPECT_TRUE(after.solved || after.deepest >= *diagnosis.without_it)
         << what << ": " << words(diagnosis.cause);
     ++named;

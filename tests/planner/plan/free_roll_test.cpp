@@ -171,11 +171,11 @@ TEST(FreeRoll, CountsAxesAloneInStrokes) {
         job.arm().strokes.push_back(stroke);
       }
       const PreparedRobot robot(problem_of_run(job, {0, false}));
-      const JobResult result = plan_job(robot, job, lazily());
+      const Answer result = plan_job(robot, job, lazily());
       costs.push_back(result.status == PlanStatus::kSolved ? result.cost : -1);
       if (result.status != PlanStatus::kSolved) continue;
       ++solved;
-      const JobCheckResult check = check_job(robot, job, result.parts);
+      const JobCheckResult check = check_job(robot, job, result.arm().parts);
       ASSERT_TRUE(check.passed) << "trial " << trial << ' ' << kWays[way];
     }
     for (const double cost : costs) ASSERT_NEAR(cost, costs.front(), 1e-9) << "trial " << trial;

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "brute_force.hpp"
+#include "diagnosis_of.hpp"
 #include "planners.hpp"
 #include "random_problem.hpp"
 #include "swivel/core/lattice/explicit_lattice.hpp"
@@ -174,7 +175,7 @@ struct Case {
   const std::shared_ptr<WaveCost> cost;
   const Hooks hooks;
   const World world;
-  const Answer truth;
+  const BruteForcePath truth;
 };
 
 /// Counts the problems by what they have and by how they end, and the questions to the caller.
@@ -188,7 +189,7 @@ struct Counts {
 /// planner's.
 void expect_truth(const Case& one, const PlanResult& result, const PlanResult& first,
                   const std::string& who) {
-  const Answer& truth = one.truth;
+  const BruteForcePath& truth = one.truth;
   ASSERT_EQ(result.status, truth.solved ? PlanStatus::kSolved : PlanStatus::kInfeasible) << who;
   ASSERT_EQ(result.cost, truth.solved ? truth.cost : 0) << who;
   for (int i = 0; truth.solved && i < one.lattice.layers(); ++i) {
@@ -199,18 +200,18 @@ void expect_truth(const Case& one, const PlanResult& result, const PlanResult& f
         << who << " row " << i;
     ASSERT_EQ(result.trajectory[row].q, first.trajectory[row].q) << who << " row " << i;
   }
-  ASSERT_EQ(words(result.diagnosis.cause), words(first.diagnosis.cause)) << who;
-  ASSERT_EQ(result.diagnosis.removed, first.diagnosis.removed) << who;
+  ASSERT_EQ(words(diagnosis_of(result).cause), words(diagnosis_of(first).cause)) << who;
+  ASSERT_EQ(diagnosis_of(result).removed, diagnosis_of(first).removed) << who;
   ASSERT_EQ(result.partial.size(), first.partial.size()) << who;
   for (std::size_t i = 0; i < result.partial.size(); ++i)
     ASSERT_EQ(result.partial[i].q, first.partial[i].q) << who << " row " << i;
   if (!truth.solved) {
-    ASSERT_EQ(result.diagnosis.reached_layer.value_or(-1), truth.deepest) << who;
-    ASSERT_NE(result.diagnosis.cause.kind, Cause::Kind::kNone) << who;
+    ASSERT_EQ(diagnosis_of(result).reached_layer.value_or(-1), truth.deepest) << who;
+    ASSERT_NE(diagnosis_of(result).cause.kind, Cause::Kind::kNone) << who;
     std::vector<int> empty;
-    for (const EmptyLayers& run : result.diagnosis.empty_layers)
+    for (const EmptyLayers& run : diagnosis_of(result).empty_layers)
       for (int layer = run.first; layer <= run.last; ++layer) empty.push_back(layer);
-    ASSERT_TRUE(!result.diagnosis.complete || empty == truth.empty) << who;
+    ASSERT_TRUE(!diagnosis_of(result).complete || empty == truth.empty) << who;
   }
 }
 
@@ -260,10 +261,10 @@ void compare_with_plain(const Case& one, const PlanResult& hooked, const std::st
                         Counts& counts) {
   const PlanResult plain = plan(one.robot, one.problem, options_for(PlannerKind::kLazy));
   counts.other_verdict += plain.status != hooked.status;
-  if (const Diagnosis& d = hooked.diagnosis; !one.truth.solved && one.check && d.without_it) {
+  if (const Diagnosis& d = diagnosis_of(hooked); !one.truth.solved && one.check && d.without_it) {
     ASSERT_EQ(d.cause.kind, Cause::Kind::kCheck) << what;
     ASSERT_TRUE(plain.status == PlanStatus::kSolved ||
-                plain.diagnosis.reached_layer.value_or(-1) >= *d.without_it)
+                diagnosis_of(plain).reached_layer.value_or(-1) >= *d.without_it)
         << what;
     ++counts.confirmed;
   }
@@ -282,7 +283,7 @@ void check_case(const Case& one, const std::string& what, Counts& counts) {
   std::optional<PlanResult> first;
   plan_with_each(one, what, first, counts);
   if (::testing::Test::HasFatalFailure()) return;
-  counts.by_check += words(first->diagnosis.cause).starts_with("check wave");
+  counts.by_check += words(diagnosis_of(*first).cause).starts_with("check wave");
   if (one.truth.solved) expect_cost_of_states(one, first->trajectory, what);
   if (::testing::Test::HasFatalFailure()) return;
   compare_with_plain(one, *first, what, counts);
@@ -374,9 +375,9 @@ TEST(Hooks, PartialPathsAreTheSameWhateverWasPlannedBefore) {
         ASSERT_EQ(result.partial.size(), first->partial.size()) << who;
         for (std::size_t i = 0; i < result.partial.size(); ++i)
           ASSERT_EQ(result.partial[i].q, first->partial[i].q) << who;
-        ASSERT_EQ(result.diagnosis.cause, first->diagnosis.cause) << who;
-        ASSERT_EQ(result.diagnosis.removed, first->diagnosis.removed) << who;
-        ASSERT_EQ(result.diagnosis.without_it, first->diagnosis.without_it) << who;
+        ASSERT_EQ(diagnosis_of(result).cause, diagnosis_of(*first).cause) << who;
+        ASSERT_EQ(diagnosis_of(result).removed, diagnosis_of(*first).removed) << who;
+        ASSERT_EQ(diagnosis_of(result).without_it, diagnosis_of(*first).without_it) << who;
       }
     }
     if (first->status != PlanStatus::kInfeasible) continue;
@@ -446,7 +447,7 @@ struct ListedCase {
   const World world;
   const EdgeRule rule;
   const Hooks hooks;
-  const Answer truth;
+  const BruteForcePath truth;
 };
 
 /// Checks the searches that ask about every node, with stored edges and without.
@@ -590,20 +591,20 @@ TEST(Hooks, ACheckThatRefusesIsTheCause) {
     options.hooks.check = check_of([](const Config&) { return false; });
     PlanResult result = plan(robot, problem, options);
     EXPECT_EQ(result.status, PlanStatus::kInfeasible);
-    EXPECT_FALSE(result.diagnosis.reached_layer.has_value());
-    EXPECT_EQ(words(result.diagnosis.cause), "check of the test");
-    EXPECT_TRUE(result.diagnosis.without_it.has_value());
-    ASSERT_EQ(result.diagnosis.empty_layers.size(), 1U);
-    const EmptyLayers& run = result.diagnosis.empty_layers[0];
+    EXPECT_FALSE(diagnosis_of(result).reached_layer.has_value());
+    EXPECT_EQ(words(diagnosis_of(result).cause), "check of the test");
+    EXPECT_TRUE(diagnosis_of(result).without_it.has_value());
+    ASSERT_EQ(diagnosis_of(result).empty_layers.size(), 1U);
+    const EmptyLayers& run = diagnosis_of(result).empty_layers[0];
     EXPECT_EQ(run.first, 0);
     EXPECT_GT(run.last, 5);
     EXPECT_EQ(words(run.cause), "check of the test");
     options.hooks.check = std::make_shared<NoMotion>();
     result = plan(robot, problem, options);
     EXPECT_EQ(result.status, PlanStatus::kInfeasible);
-    EXPECT_EQ(result.diagnosis.reached_layer, 0);
-    EXPECT_EQ(words(result.diagnosis.cause), "check rest between layers");
-    const auto& removed = result.diagnosis.removed;
+    EXPECT_EQ(diagnosis_of(result).reached_layer, 0);
+    EXPECT_EQ(words(diagnosis_of(result).cause), "check rest between layers");
+    const auto& removed = diagnosis_of(result).removed;
     EXPECT_TRUE(std::any_of(removed.begin(), removed.end(), [](const Diagnosis::Removed& one) {
       return words(one.cause) == "check rest between layers" && one.count > 0;
     }));

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "brute_force.hpp"
+#include "diagnosis_of.hpp"
 #include "inexact_robots.hpp"
 #include "planners.hpp"
 #include "random_problem.hpp"
@@ -32,7 +33,7 @@ struct Laid {
   SrsLattice lattice;
 };
 
-Answer truth_of(const Laid& laid) {
+BruteForcePath truth_of(const Laid& laid) {
   return brute_force(
       laid.lattice, laid.robot.world(), laid.robot.world().edge_rule(laid.robot.radii()),
       [&](int layer, int a, int b) { return window_allows(laid.lattice, layer, a, b); });
@@ -46,8 +47,8 @@ struct Counts {
 };
 
 /// Checks a planner's answer, with its rows and reasons, against the first planner's.
-void expect_same_answer(const PlanResult& other, const PlanResult& first, const Answer& truth,
-                        const std::string& what) {
+void expect_same_answer(const PlanResult& other, const PlanResult& first,
+                        const BruteForcePath& truth, const std::string& what) {
   ASSERT_EQ(other.status, truth.solved ? PlanStatus::kSolved : PlanStatus::kInfeasible)
       << what << " " << other.planner;
   ASSERT_EQ(other.cost, first.cost) << what << " " << other.planner;
@@ -58,13 +59,14 @@ void expect_same_answer(const PlanResult& other, const PlanResult& first, const 
         << what << " " << other.planner << " row " << i;
     ASSERT_EQ(other.trajectory[i].phi, first.trajectory[i].phi) << what;
   }
-  ASSERT_EQ(words(other.diagnosis.cause), words(first.diagnosis.cause))
+  ASSERT_EQ(words(diagnosis_of(other).cause), words(diagnosis_of(first).cause))
       << what << " " << other.planner;
-  ASSERT_EQ(other.diagnosis.removed, first.diagnosis.removed) << what << " " << other.planner;
+  ASSERT_EQ(diagnosis_of(other).removed, diagnosis_of(first).removed)
+      << what << " " << other.planner;
 }
 
 /// Checks how far a problem without a path is said to reach, and its layers without nodes.
-void expect_reaches_as_far(const Diagnosis& diagnosis, const Answer& truth,
+void expect_reaches_as_far(const Diagnosis& diagnosis, const BruteForcePath& truth,
                            const std::string& what) {
   ASSERT_EQ(diagnosis.reached_layer.value_or(-1), truth.deepest) << what;
   std::vector<int> empty;
@@ -75,7 +77,7 @@ void expect_reaches_as_far(const Diagnosis& diagnosis, const Answer& truth,
 
 /// Checks a trajectory's arm angles, start and cost, and notes how far its tool is from the path.
 void expect_rows_of_path(const Laid& laid, const PathProblem& problem, const PlanResult& result,
-                         const Answer& truth, const std::string& what, Counts& counts) {
+                         const BruteForcePath& truth, const std::string& what, Counts& counts) {
   const SrsLattice& lattice = laid.lattice;
   ASSERT_EQ(result.lattice.cost, truth.cost) << what;
   counts.dearer += result.cost != result.lattice.cost;
@@ -104,7 +106,7 @@ void check_problem(const PathProblem& problem, const std::string& what, Counts& 
   for (int layer = 0; layer < lattice.layers(); ++layer)
     for (int slot = 0; slot < lattice.width(); ++slot)
       counts.without_row += lattice.node(layer, slot) && !lattice.exact_config(layer, slot);
-  const Answer truth = truth_of(laid);
+  const BruteForcePath truth = truth_of(laid);
   std::vector<PlanResult> results;
   for (const PlannerKind planner : kPlanners) {
     results.push_back(plan(laid.robot, problem, with_all_evidence(planner)));
@@ -119,7 +121,7 @@ void check_problem(const PathProblem& problem, const std::string& what, Counts& 
     expect_rows_of_path(laid, problem, results[0], truth, what, counts);
   } else {
     ++counts.infeasible;
-    expect_reaches_as_far(results[0].diagnosis, truth, what);
+    expect_reaches_as_far(diagnosis_of(results[0]), truth, what);
   }
 }
 
@@ -284,7 +286,7 @@ TEST(Inexact, AStartBeyondTheFittedArmsReachIsANode) {
     ASSERT_TRUE(node);
     ASSERT_EQ(laid.lattice.exact_config(0, laid.lattice.start_slot()), q);
     (*node == q ? own : fitted) += 1;
-    const Answer truth = truth_of(laid);
+    const BruteForcePath truth = truth_of(laid);
     for (const PlannerKind planner : kPlanners) {
       PlanOptions options;
       options.planner = planner;

@@ -112,7 +112,7 @@ TEST(NarrowArc, IsPassedWithArcsAndFinerIsAdvisedWithout) {
     ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
     if (without.status == PlanStatus::kSolved) continue;
     ++missed;
-    EXPECT_EQ(without.diagnosis.holds(), Diagnosis::Holds::kThisResolution) << what;
+    EXPECT_EQ(without.diagnosis->holds(), Diagnosis::Holds::kThisResolution) << what;
     Planner planner(problem);
     PlanOptions options;
     options.planner = PlannerKind::kLazy;
@@ -194,7 +194,7 @@ void check_no_path(const PathProblem& problem, const ArmModel& arm, const SrsArm
   const PlanResult result = planned(problem, false);
   if (result.status == PlanStatus::kSolved) return;
   const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
-  const Diagnosis& diagnosis = result.diagnosis;
+  const Diagnosis& diagnosis = *result.diagnosis;
   ++counts.seen[static_cast<std::size_t>(diagnosis.holds())];
   expect_holds_as_proved(problem, path, arm, srs, diagnosis, what);
   if (::testing::Test::HasFatalFailure()) return;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "diagnosis_of.hpp"
 #include "random_problem.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/study/campaign.hpp"
@@ -26,8 +27,8 @@ void expect_same(const PlanResult& remembered, const PlanResult& fresh, const st
     ASSERT_EQ(remembered.trajectory[i].branch, fresh.trajectory[i].branch) << what << " row " << i;
   }
   ASSERT_EQ(remembered.partial.size(), fresh.partial.size()) << what;
-  ASSERT_EQ(remembered.diagnosis.reached_layer, fresh.diagnosis.reached_layer) << what;
-  ASSERT_EQ(remembered.diagnosis.removed, fresh.diagnosis.removed) << what;
+  ASSERT_EQ(diagnosis_of(remembered).reached_layer, diagnosis_of(fresh).reached_layer) << what;
+  ASSERT_EQ(diagnosis_of(remembered).removed, diagnosis_of(fresh).removed) << what;
   ASSERT_EQ(remembered.warnings, fresh.warnings) << what;
   ASSERT_EQ(remembered.lattice.nodes, fresh.lattice.nodes) << what;
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "brute_force.hpp"
+#include "diagnosis_of.hpp"
 #include "inexact_robots.hpp"
 #include "planners.hpp"
 #include "random_problem.hpp"
@@ -175,7 +176,7 @@ class Joinable {
 /// Holds a lattice of one problem and its answer by brute force.
 struct Truth {
   std::unique_ptr<const RollLattice> lattice;
-  Answer answer;
+  BruteForcePath answer;
 };
 
 /// Plans by brute force: with joint 7 at rest where that is enough, else with all rolls.
@@ -212,9 +213,9 @@ void expect_same_answer(const PlanResult& result, const PlanResult& first, const
   for (std::size_t i = 0; i < result.trajectory.size(); ++i)
     ASSERT_EQ(result.trajectory[i].q, first.trajectory[i].q)
         << what << ' ' << result.planner << " row " << i;
-  ASSERT_EQ(result.diagnosis.reached_layer, first.diagnosis.reached_layer)
+  ASSERT_EQ(diagnosis_of(result).reached_layer, diagnosis_of(first).reached_layer)
       << what << ' ' << result.planner;
-  ASSERT_EQ(result.diagnosis.cause, first.diagnosis.cause) << what << ' ' << result.planner;
+  ASSERT_EQ(diagnosis_of(result).cause, diagnosis_of(first).cause) << what << ' ' << result.planner;
 }
 
 /// Checks the cost and the rows of a path, and counts what it has.
@@ -255,8 +256,8 @@ void check_problem(const PathProblem& problem, const std::string& what, Counts& 
     expect_path(robot, problem, *first, truth, what, counts);
   } else {
     ++counts.infeasible;
-    ASSERT_GE(first->diagnosis.reached_layer.value_or(-1), truth.answer.deepest) << what;
-    ASSERT_FALSE(words(first->diagnosis.cause).empty()) << what;
+    ASSERT_GE(diagnosis_of(*first).reached_layer.value_or(-1), truth.answer.deepest) << what;
+    ASSERT_FALSE(words(diagnosis_of(*first).cause).empty()) << what;
   }
 }
 

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "diagnosis_of.hpp"
 #include "motion_problem.hpp"
 #include "swivel/core/kinematics/srs/srs.hpp"
 #include "swivel/planner/plan/planner.hpp"
@@ -88,13 +89,15 @@ void plan_in_parts(const PathProblem& line, const std::string& what, Tally& tall
     ASSERT_EQ(result.lattice.layers, first.lattice.layers) << what << " parts " << parts;
     if (first.status != PlanStatus::kSolved) {
       // Frames that are carried over more waypoints are rounded otherwise.
-      ASSERT_EQ(words(result.diagnosis.cause), words(first.diagnosis.cause))
+      ASSERT_EQ(words(diagnosis_of(result).cause), words(diagnosis_of(first).cause))
           << what << " parts " << parts;
-      ASSERT_EQ(result.diagnosis.reached_layer, first.diagnosis.reached_layer)
+      ASSERT_EQ(diagnosis_of(result).reached_layer, diagnosis_of(first).reached_layer)
           << what << " parts " << parts;
       // The rows about the end of the paths are those of the longer list.
-      ASSERT_GE(result.diagnosis.waypoints[1], parts * (first.diagnosis.waypoints[1] - 1)) << what;
-      ASSERT_LE(result.diagnosis.waypoints[1], parts * first.diagnosis.waypoints[1]) << what;
+      ASSERT_GE(diagnosis_of(result).waypoints[1], parts * (diagnosis_of(first).waypoints[1] - 1))
+          << what;
+      ASSERT_LE(diagnosis_of(result).waypoints[1], parts * diagnosis_of(first).waypoints[1])
+          << what;
       continue;
     }
     ASSERT_NEAR(result.cost, first.cost, 1e-9) << what << " parts " << parts;
@@ -124,11 +127,11 @@ TEST(Slopes, OneVerdictForALineOfSixJointsHoweverManyWaypoints) {
     plan_in_parts(line, what, tally, result);
     if (HasFatalFailure()) return;
     if (result.status == PlanStatus::kSolved) continue;
-    const Cause& cause = result.diagnosis.cause;
+    const Cause& cause = diagnosis_of(result).cause;
     EXPECT_NE(cause.kind, Cause::Kind::kSpeed) << what << ": no speed of the tool is asked for";
     if (cause.kind != Cause::Kind::kRollSlope) continue;
     ++tally.by_slope;
-    if (!result.diagnosis.without_it) continue;
+    if (!diagnosis_of(result).without_it) continue;
     ASSERT_TRUE(cause.value && cause.limit && cause.over) << what;
     EXPECT_EQ(cause.joint, "roll") << what;
     EXPECT_GT(*cause.value, *cause.limit) << what;
@@ -218,7 +221,7 @@ TEST(Slopes, AJointThatHasRunOutOfTurnsIsAtItsLimit) {
     const PlanResult result = planner.plan(options);
     if (result.status == PlanStatus::kSolved) continue;
     ASSERT_EQ(result.status, PlanStatus::kInfeasible) << what;
-    const Cause& cause = result.diagnosis.cause;
+    const Cause& cause = diagnosis_of(result).cause;
     if (!cause.unwinds) {
       std::printf("%s: %s %s\n", what.c_str(), words(cause).c_str(), figures(cause).c_str());
       continue;

@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "diagnosis_of.hpp"
 #include "random_problem.hpp"
 #include "swivel/core/study/campaign.hpp"
 #include "swivel/planner/plan/planner.hpp"
@@ -22,7 +23,7 @@ using namespace test;
 void expect_same_answer(const PlanResult& result, const PlanResult& first) {
   EXPECT_EQ(result.status, first.status);
   EXPECT_EQ(result.cost, first.cost);
-  EXPECT_EQ(result.diagnosis.reached_layer, first.diagnosis.reached_layer);
+  EXPECT_EQ(diagnosis_of(result).reached_layer, diagnosis_of(first).reached_layer);
   ASSERT_EQ(result.trajectory.size(), first.trajectory.size());
   for (std::size_t i = 0; i < result.trajectory.size(); ++i)
     ASSERT_EQ(result.trajectory[i].q, first.trajectory[i].q);
@@ -37,7 +38,7 @@ void expect_same(const PlanResult& result, const PlanResult& first) {
   EXPECT_EQ(result.counters.proved_colliding, first.counters.proved_colliding);
   EXPECT_EQ(result.counters.nodes_checked, first.counters.nodes_checked);
   EXPECT_EQ(result.counters.edges_checked, first.counters.edges_checked);
-  EXPECT_EQ(words(result.diagnosis.cause), words(first.diagnosis.cause));
+  EXPECT_EQ(words(diagnosis_of(result).cause), words(diagnosis_of(first).cause));
 }
 
 /// The result of plan_with(threads) at the first of these thread counts; those at the others are
@@ -168,7 +169,7 @@ TEST(Planner, ClonesInThreadsAnswerAsSerialPlansDo) {
         const PlanResult result = mine->plan(options);
         bool same = result.status == step.answer.status && result.cost == step.answer.cost &&
                     result.trajectory.size() == step.answer.trajectory.size() &&
-                    result.diagnosis.reached_layer == step.answer.diagnosis.reached_layer;
+                    diagnosis_of(result).reached_layer == diagnosis_of(step.answer).reached_layer;
         for (std::size_t i = 0; same && i < result.trajectory.size(); ++i)
           same = result.trajectory[i].q == step.answer.trajectory[i].q;
         equal += same;

@@ -316,7 +316,7 @@ TEST(Windings, TellHowFarAJointWouldTurn) {
   job.arm().transition_limits = problem.limits;
   static_cast<Task&>(job.arm().strokes.emplace_back()) = problem;
   job.arm().strokes[0].name = "screw";
-  const JobResult strokes = plan_job(job);
+  const Answer strokes = plan_job(job);
   EXPECT_EQ(strokes.status, PlanStatus::kInfeasible);
   EXPECT_EQ(turns_note_of(strokes.warnings),
             formatted("stroke 'screw': but for its limits, %s would turn by %.0f deg along the "

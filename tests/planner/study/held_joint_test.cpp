@@ -97,10 +97,10 @@ PlacementRow row_alone(const PlacementCell& cell, const PathProblem& problem,
   const PlanResult result = plan(problem, options);
   row.status = result.status;
   if (row.status != PlanStatus::kSolved) {
-    row.failed_s = result.diagnosis.reached_s;
-    row.cause = to_string(result.diagnosis.cause.kind);
-    row.by = subject_of(result.diagnosis.cause, problem.scene);
-    row.reason = words(result.diagnosis.cause);
+    row.failed_s = result.diagnosis->reached_s;
+    row.cause = to_string(result.diagnosis->cause.kind);
+    row.by = subject_of(result.diagnosis->cause, problem.scene);
+    row.reason = words(result.diagnosis->cause);
     return row;
   }
   row.cost = result.cost;
@@ -265,8 +265,7 @@ TEST(HeldJoint, RowsOfJobsAreSinglePlans) {
     for (std::size_t k = 0; k < cells.size(); ++k) {
       Problem placed = placed_problem(job, door, cells[k].offset);
       placed.arm().hold["torso_joint_b1"] = cells[k].hold.at("torso_joint_b1");
-      const JobResult alone =
-          plan_job(PreparedRobot(problem_of_run(placed, {0, false})), placed, {});
+      const Answer alone = plan_job(PreparedRobot(problem_of_run(placed, {0, false})), placed, {});
       EXPECT_EQ(rows[k].status, alone.status) << k;
       EXPECT_EQ(rows[k].hold, cells[k].hold) << k;
       if (alone.status == PlanStatus::kSolved) {

@@ -67,7 +67,7 @@ TEST(JobCampaign, EachRowIsThatOfItsJobAtAnyThreadCount) {
   options.plan.threads = 1;
   std::mutex mutex;
   std::map<std::uint64_t, double> told;  // costs
-  options.job_planned = [&](std::uint64_t episode, const JobResult& result) {
+  options.planned = [&](std::uint64_t episode, const Answer& result) {
     const std::lock_guard lock(mutex);
     told[episode] = result.cost;
   };
@@ -85,7 +85,7 @@ TEST(JobCampaign, EachRowIsThatOfItsJobAtAnyThreadCount) {
               episode_problem(problem_of_run(door.job, {0, false}), 5, k).scene[0].pose.matrix());
     PlanOptions alone;
     alone.evidence.tool_path_error = true;
-    const JobResult result = plan_job(*door.robot, job, alone);
+    const Answer result = plan_job(*door.robot, job, alone);
     EpisodeRow expected(k, result, job);
     expected.offsets = episode_offsets(job.vary, 5, k);
     expect_same(rows[k], expected);
@@ -134,7 +134,7 @@ PlacementRow row_alone(const DoorJob& door, const Movable& thing, const Placemen
   PlacementRow row{.cell = cell.cell, .offset = cell.offset};
   PlanOptions options;
   options.evidence.postures = true;
-  const JobResult result =
+  const Answer result =
       plan_job(*door.robot, placed_problem(door.job, thing, cell.offset), options);
   row.status = result.status;
   if (result.status != PlanStatus::kSolved) {
@@ -145,8 +145,8 @@ PlacementRow row_alone(const DoorJob& door, const Movable& thing, const Placemen
   }
   row.cost = result.cost;
   row.checked = result.checked;
-  for (const RunResult& run : result.runs) {
-    const Measures& m = run.measures;
+  for (const RunAnswer& run : result.arm().runs) {
+    const Measures& m = run;
     if (!row.clearance_margin || m.min_margin->margin < *row.clearance_margin)
       row.clearance_margin = m.min_margin->margin, row.clearance = m.min_margin->clearance;
     if (!row.joint_margin || m.nearest_limit->margin < *row.joint_margin)
@@ -250,9 +250,9 @@ TEST(StudyFailure, NamesTheTransitionThatHasNoWay) {
   DoorJob door;
   door.job.arm().transition_limits.clearance =
       0.3;  // of transitions: the arm is nearer to things at home
-  const JobResult result = plan_job(*door.robot, door.job);
+  const Answer result = plan_job(*door.robot, door.job);
   ASSERT_EQ(result.status, PlanStatus::kInfeasible);
-  ASSERT_TRUE(result.no_transition && result.no_transition->bodies);
+  ASSERT_TRUE(result.arm().no_transition && result.arm().no_transition->bodies);
   const StudyFailure failure = failure_of(result, door.job);
   EXPECT_EQ(failure.cause, "transition");
   EXPECT_FALSE(failure.reached_s);

@@ -107,10 +107,10 @@ PlacementRow row_of(const PlacementCell& cell, const PlanResult& result,
     if (result.nearest_slide_limit) row.slide_margin = result.nearest_slide_limit->margin;
     if (result.top_tool_speed) row.tool_speed = result.top_tool_speed->speed;
   } else {
-    row.failed_s = result.diagnosis.reached_s;
-    row.cause = to_string(result.diagnosis.cause.kind);
-    row.by = subject_of(result.diagnosis.cause, placed.scene);
-    row.reason = words(result.diagnosis.cause);
+    row.failed_s = result.diagnosis->reached_s;
+    row.cause = to_string(result.diagnosis->cause.kind);
+    row.by = subject_of(result.diagnosis->cause, placed.scene);
+    row.reason = words(result.diagnosis->cause);
   }
   return row;
 }
@@ -185,8 +185,8 @@ std::vector<PlacementCell> neighbouring_cells(Random& random) {
 /// Checks a row against the plan of its cell alone.
 void expect_row_of(const PlacementRow& row, const PlanResult& alone, const std::string& here) {
   if (alone.status != PlanStatus::kSolved) {
-    EXPECT_EQ(row.failed_s, alone.diagnosis.reached_s) << here;
-    EXPECT_EQ(row.reason, words(alone.diagnosis.cause)) << here;
+    EXPECT_EQ(row.failed_s, alone.diagnosis->reached_s) << here;
+    EXPECT_EQ(row.reason, words(alone.diagnosis->cause)) << here;
     return;
   }
   EXPECT_EQ(row.cost, alone.cost) << here;

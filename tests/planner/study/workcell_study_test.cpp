@@ -77,7 +77,7 @@ PlacementRow row_alone(const Problem& cell, const Movable& thing, const Placemen
   Problem placed = placed_problem(cell, thing, at.offset);
   for (ArmTask& arm : placed.arms)
     for (const auto& [joint, position] : at.hold) arm.hold[joint] = position;
-  const WorkcellResult result = plan_workcell(placed, options);
+  const Answer result = plan_workcell(placed, options);
   row.status = result.status;
   if (result.status != PlanStatus::kSolved) {
     const StudyFailure failure = failure_of(result, cell);
@@ -85,9 +85,10 @@ PlacementRow row_alone(const Problem& cell, const Movable& thing, const Placemen
     row.cause = failure.cause, row.by = failure.by, row.reason = failure.reason;
     return row;
   }
-  row.cost = result.arms[0].cost + result.arms[1].cost;
-  std::vector<LeastMargin> margins{*result.between_arms};
-  for (const PlanResult& arm : result.arms) {
+  row.cost = result.arms[0].cost() + result.arms[1].cost();
+  std::vector<LeastMargin> margins{*result.pair.nearest};
+  for (const ArmAnswer& of : result.arms) {
+    const RunAnswer& arm = of.run();
     margins.push_back(*arm.min_margin);
     row.joint_margin =
         std::min(row.joint_margin.value_or(arm.nearest_limit->margin), arm.nearest_limit->margin);
@@ -370,11 +371,11 @@ TEST(WorkcellPlacements, TellThatAGivenMotionIsBarred) {
   for (int trial = 0; trial < count; ++trial) {
     SCOPED_TRACE(trial);
     Problem cell = random_workcell(data_robot("sda10f"), random);
-    const WorkcellResult both = plan_workcell(cell);
+    const Answer both = plan_workcell(cell);
     if (both.status != PlanStatus::kSolved) continue;
     ArmTask& left = cell.arms[0];
     const Vector3d at = left.path().waypoints[0].position;
-    for (const TrajectoryRow& row : both.arms[0].trajectory) left.given.push_back(row.q);
+    for (const TrajectoryRow& row : both.arms[0].rows()) left.given.push_back(row.q);
     left.path().waypoints.clear();
     cell.scene.push_back(object("post", Sphere{0.05}, at + Vector3d(0, 0, -0.6)));
     std::vector<PlacementCell> cells;
@@ -451,7 +452,7 @@ TEST(WorkcellCampaign, EachRowIsThatOfItsWorkcellAtAnyThreadCount) {
     options.plan.threads = 1;
     std::mutex mutex;
     std::map<std::uint64_t, double> told;  // costs
-    options.workcell_planned = [&](std::uint64_t episode, const WorkcellResult& result) {
+    options.planned = [&](std::uint64_t episode, const Answer& result) {
       const std::lock_guard lock(mutex);
       told[episode] = result.cost;
     };
@@ -473,7 +474,7 @@ TEST(WorkcellCampaign, EachRowIsThatOfItsWorkcellAtAnyThreadCount) {
       PlanOptions alone;
       alone.threads = 1;
       alone.evidence.tool_path_error = true;
-      const WorkcellResult result = plan_workcell(drawn, alone);
+      const Answer result = plan_workcell(drawn, alone);
       EpisodeRow expected(k, result, cell);
       expected.offsets = episode_offsets(cell.vary, 5, k);
       expect_same(rows[k], expected);
@@ -481,7 +482,7 @@ TEST(WorkcellCampaign, EachRowIsThatOfItsWorkcellAtAnyThreadCount) {
       EXPECT_EQ(rows[k].cost.value_or(0), told[k]);
       EXPECT_EQ(rows[k].reason.empty(), result.status == PlanStatus::kSolved);
       if (result.status != PlanStatus::kSolved) continue;
-      EXPECT_EQ(*rows[k].cost, result.arms[0].cost + result.arms[1].cost);
+      EXPECT_EQ(*rows[k].cost, result.arms[0].cost() + result.arms[1].cost());
       EXPECT_EQ(rows[k].nodes_checked,
                 result.arms[0].counters.nodes_checked + result.arms[1].counters.nodes_checked);
       EXPECT_GT(*rows[k].tool_path_error_mm_mean, 0);

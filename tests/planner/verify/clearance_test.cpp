@@ -45,7 +45,7 @@ TEST(SelfClearance, LinksThatAreNearByDesignMayNotMeet) {
     problem.limits.clearance = clearance;
     const PlanResult touching = plan_with_evidence(problem);
     EXPECT_EQ(touching.status, PlanStatus::kInfeasible) << clearance;
-    EXPECT_EQ(words(touching.diagnosis.cause), "l5 - l7") << clearance;
+    EXPECT_EQ(words(touching.diagnosis->cause), "l5 - l7") << clearance;
     problem = short_path(robot, posture(-1.0));
     problem.limits.clearance = clearance;
     const PlanResult apart = plan_with_evidence(problem);

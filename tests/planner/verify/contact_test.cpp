@@ -10,9 +10,8 @@
 #include "robots.hpp"
 #include "seed.hpp"
 #include "swivel/collision/world/world.hpp"
+#include "swivel/core/answer/answer.hpp"
 #include "swivel/core/answer/answer_text.hpp"
-#include "swivel/core/answer/job_result.hpp"
-#include "swivel/core/answer/workcell_result.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/motion/job_text.hpp"
 #include "swivel/core/problem/problem.hpp"
@@ -96,7 +95,7 @@ TEST(Contact, DeeperThanAllowedIsACollisionForEveryoneWhoJudges) {
 
     const PlanResult little = planned(polishing(deep, 0.003), planner);
     ASSERT_EQ(little.status, PlanStatus::kInfeasible);
-    const Cause& cause = little.diagnosis.cause;
+    const Cause& cause = little.diagnosis->cause;
     EXPECT_EQ(cause.kind, Cause::Kind::kPair);
     EXPECT_EQ(cause.bodies, (std::array<std::string, 2>{"disc", "plate"}));
     ASSERT_TRUE(cause.value && cause.limit);
@@ -181,7 +180,7 @@ TEST(Contact, NearlyAsDeepAsAllowedIsPlannedOrRefusedAtOnce) {
     EXPECT_LE(result.counters.edges_checked, 20 * result.lattice.layers);
     if (deep > kAllowed - 2 * kAllowed / 32) {
       ASSERT_EQ(result.status, PlanStatus::kInfeasible);
-      const Cause& cause = result.diagnosis.cause;
+      const Cause& cause = result.diagnosis->cause;
       EXPECT_FALSE(cause.between_layers);
       ASSERT_TRUE(cause.value);
       EXPECT_NEAR(*cause.value, -deep, 0.03e-3);
@@ -231,7 +230,7 @@ TEST(Contact, ThatIsTooDeepIsToldWithItsDepthAndAdvised) {
   Planner between(problem);
   const PlanResult result = between.plan();
   ASSERT_EQ(result.status, PlanStatus::kInfeasible);
-  const Cause& cause = result.diagnosis.cause;
+  const Cause& cause = result.diagnosis->cause;
   EXPECT_TRUE(cause.between_layers);
   EXPECT_EQ(cause.bodies, (std::array<std::string, 2>{"stylus", "pin"}));
   ASSERT_TRUE(cause.value && cause.limit && cause.over);
@@ -344,21 +343,21 @@ TEST(Contact, ThatWasNotMeasuredOfAJobIsSaidOfEachRun) {
       [&](const PlanOptions& options) { return plan_job(job, options); }, 0);
   ASSERT_TRUE(stopped);
   ASSERT_EQ(stopped->status, PlanStatus::kSolved);
-  ASSERT_EQ(stopped->runs.size(), 2u);
-  for (const RunResult& run : stopped->runs) {
-    EXPECT_EQ(run.measures.deepest_contact_status(), Known::kNotMeasured);
-    EXPECT_EQ(run.measures.min_clearance_status(), Known::kNotMeasured);
+  ASSERT_EQ(stopped->arm().runs.size(), 2u);
+  for (const RunAnswer& run : stopped->arm().runs) {
+    EXPECT_EQ(run.deepest_contact_status(), Known::kNotMeasured);
+    EXPECT_EQ(run.min_clearance_status(), Known::kNotMeasured);
   }
-  const std::string text = job_text(*stopped, job);
+  const std::string text = answer_text(*stopped, job);
   EXPECT_TRUE(says(text, "depth of contact of 'first'") &&
               says(text, "depth of contact of 'second'"))
       << text;
   PlanOptions all;
   all.evidence = Evidence::all();
-  const JobResult whole = plan_job(job, all);
-  for (const RunResult& run : whole.runs) {
-    ASSERT_TRUE(run.measures.deepest_contact);
-    EXPECT_NEAR(run.measures.deepest_contact->depth, 0.001, 1.2e-3);
+  const Answer whole = plan_job(job, all);
+  for (const RunAnswer& run : whole.arm().runs) {
+    ASSERT_TRUE(run.deepest_contact);
+    EXPECT_NEAR(run.deepest_contact->depth, 0.001, 1.2e-3);
   }
 }
 
@@ -369,10 +368,10 @@ TEST(Contact, ThatWasNotMeasuredOfTwoArmsIsSaidOfBoth) {
     const auto stopped = stopped_while_measuring(
         [&](const PlanOptions& options) { return plan_workcell(cell, options); }, 0);
     if (!stopped) continue;  // this one has no plan
-    const std::string text = answer_text(*stopped), json = io::to_workcell_json(*stopped);
-    for (const PlanResult& arm : stopped->arms)
-      EXPECT_EQ(arm.min_clearance_status(), Known::kNotMeasured);
-    EXPECT_EQ(stopped->between_arms_status(), Known::kNotMeasured);
+    const std::string text = answer_text(*stopped, cell), json = io::to_workcell_json(*stopped);
+    for (const ArmAnswer& arm : stopped->arms)
+      EXPECT_EQ(arm.run().min_clearance_status(), Known::kNotMeasured);
+    EXPECT_EQ(stopped->pair.nearest_status(), Known::kNotMeasured);
     EXPECT_TRUE(says(text, "clearance between them not measured")) << text;
     EXPECT_TRUE(says(text, "not measured, for time ran out")) << text;
     EXPECT_TRUE(says(json, "\"between_arms_status\": \"not_measured\""));

@@ -224,18 +224,18 @@ TEST(StepSegment, StrokesOfJobsHaveTheErrorsOfPaths) {
     for (const std::size_t noisy : {0, 1}) {
       const Problem& job = jobs[noisy];
       const PreparedRobot prepared(problem_of_run(job, {0, false}));
-      const JobResult found = plan_job(prepared, job, with_errors());
+      const Answer found = plan_job(prepared, job, with_errors());
       status[noisy] = found.status;
       ++tally.cases;
       if (found.status != PlanStatus::kSolved) continue;
       ++tally.solved;
-      const JobCheckResult check = check_job(prepared, job, found.parts);
+      const JobCheckResult check = check_job(prepared, job, found.arm().parts);
       ASSERT_TRUE(check.passed) << what << ": " << check.failures.front();
       std::size_t run = 0;
-      for (const JobPart& part : found.parts) {
+      for (const Part& part : found.arm().parts) {
         if (!part.run) continue;
         expect_errors_as_outside(prepared, problem_of_run(job, *part.run), part.rows,
-                                 found.runs[run].measures, check.runs[run], what, tally);
+                                 found.arm().runs[run], check.runs[run], what, tally);
         ++run;
       }
       Problem other = jobs[1 - noisy];
@@ -277,17 +277,16 @@ TEST(StepSegment, TwoArmsHaveTheErrorsOfPaths) {
     std::array<PlanStatus, 2> status{};
     for (const std::size_t noisy : {0, 1}) {
       const PreparedWorkcell prepared(cells[noisy]);
-      const WorkcellResult found = plan_workcell(prepared, with_errors());
+      const Answer found = plan_workcell(prepared, with_errors());
       status[noisy] = found.status;
       ++tally.cases;
       if (found.status != PlanStatus::kSolved) continue;
       ++tally.solved;
-      const WorkcellCheckResult check =
-          check_workcell(prepared, {found.arms[0].trajectory, found.arms[1].trajectory});
+      const WorkcellCheckResult check = check_workcell(prepared, rows_of_arms(found));
       ASSERT_TRUE(check.passed) << what;
       for (std::size_t k = 0; k < 2; ++k)
-        expect_errors_as_outside(prepared.robot(k), prepared.problem(k), found.arms[k].trajectory,
-                                 found.arms[k], check.arms[k], what, tally);
+        expect_errors_as_outside(prepared.robot(k), prepared.problem(k), found.arms[k].rows(),
+                                 found.arms[k].run(), check.arms[k], what, tally);
       Problem other = cells[1 - noisy];
       for (ArmTask& arm : other.arms) loosen(arm.path());
       EXPECT_EQ(plan_workcell(PreparedWorkcell(other), with_errors()).status, PlanStatus::kSolved)

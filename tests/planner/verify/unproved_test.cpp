@@ -44,28 +44,27 @@ Problem short_workcell() {
 }
 
 /// What became of an answer.
-struct Answer {
+struct Outcome {
   PlanStatus status;
   bool checked;
-  std::size_t rows, partial;  ///< numbers of rows or parts
+  std::size_t rows, partial;  ///< numbers of rows, or of parts
 };
-Answer answer(const PlanResult& result) {
+Outcome outcome(const PlanResult& result) {
   return {result.status, result.checked, result.trajectory.size(), result.partial.size()};
 }
-Answer answer(const JobResult& result) {
-  return {result.status, result.checked, result.parts.size(), result.partial.size()};
-}
-Answer answer(const WorkcellResult& result) {
-  for (const PlanResult& arm : result.arms) EXPECT_EQ(arm.status, result.status);
-  return {result.status, result.checked,
-          result.arms[0].trajectory.size() + result.arms[1].trajectory.size(),
-          result.arms[0].partial.size() + result.arms[1].partial.size()};
+Outcome outcome(const Answer& answer) {
+  Outcome found{answer.status, answer.checked, 0, 0};
+  for (const ArmAnswer& arm : answer.arms) {
+    found.rows += arm.parts.size();
+    found.partial += arm.partial.size();
+  }
+  return found;
 }
 
 /// Plans with options that stop the plan when its proof begins: by a request, or, `late`, by its
 /// time-out.
 template <class Plan>
-Answer stopped_at_proof(const Plan& plan, bool late) {
+Outcome stopped_at_proof(const Plan& plan, bool late) {
   constexpr double kTimeout = 2;  // s
   const auto begun = std::chrono::steady_clock::now();
   std::stop_source source;
@@ -81,7 +80,7 @@ Answer stopped_at_proof(const Plan& plan, bool late) {
     else
       source.request_stop();
   };
-  const Answer found = answer(plan(options));
+  const Outcome found = outcome(plan(options));
   EXPECT_EQ(proofs, 1);
   return found;
 }
@@ -90,20 +89,20 @@ template <class Plan>
 void expect_none_unproved(const Plan& plan, const std::string& what) {
   SCOPED_TRACE(what);
   for (const bool late : {false, true}) {
-    const Answer stopped = stopped_at_proof(plan, late);
+    const Outcome stopped = stopped_at_proof(plan, late);
     EXPECT_EQ(stopped.status, late ? PlanStatus::kTimeout : PlanStatus::kCancelled);
     EXPECT_FALSE(stopped.checked);
     EXPECT_EQ(stopped.rows, 0U);
     EXPECT_GT(stopped.partial, 0U);
   }
-  const Answer proved = answer(plan(PlanOptions()));
+  const Outcome proved = outcome(plan(PlanOptions()));
   EXPECT_EQ(proved.status, PlanStatus::kSolved);
   EXPECT_TRUE(proved.checked);
   EXPECT_GT(proved.rows, 0U);
   EXPECT_EQ(proved.partial, 0U);
   PlanOptions without_proof;
   without_proof.check = false;
-  const Answer unproved = answer(plan(without_proof));
+  const Outcome unproved = outcome(plan(without_proof));
   EXPECT_EQ(unproved.status, PlanStatus::kSolved);
   EXPECT_FALSE(unproved.checked);
   EXPECT_EQ(unproved.rows, proved.rows);
@@ -135,10 +134,10 @@ TEST(Unproved, TheBestOrderThatWasProvedStays) {
     if (proved) source.request_stop();  // the first stage of the next order
     proved = now.stage == Stage::kProving;
   };
-  const JobResult found = plan_job(robot, job, options);
+  const Answer found = plan_job(robot, job, options);
   EXPECT_EQ(found.status, PlanStatus::kSolved);
   EXPECT_TRUE(found.checked);
-  EXPECT_GT(found.parts.size(), 0U);
+  EXPECT_GT(found.arm().parts.size(), 0U);
 }
 
 /// A job that has none without lift-offs is not said to have none where time ended before lift-offs
@@ -155,10 +154,10 @@ TEST(Unproved, LiftOffsThatWereNotTriedAreNoVerdict) {
   options.progress = [&](const Progress& now) {
     if (now.stage == Stage::kProving && proofs++ == 0) source.request_stop();
   };
-  const JobResult found = plan_job(robot, job, options);
+  const Answer found = plan_job(robot, job, options);
   EXPECT_GT(proofs, 0);
   EXPECT_EQ(found.status, PlanStatus::kCancelled);
-  EXPECT_TRUE(found.parts.empty());
+  EXPECT_TRUE(found.arm().parts.empty());
 }
 
 }  // namespace

@@ -189,7 +189,7 @@ std::optional<double> cost_of(const Problem& cell) {
     PlanOptions options;
     options.planner = PlannerKind::kLazy;
     options.check = true;
-    const WorkcellResult found = plan_workcell(cell, options);
+    const Answer found = plan_workcell(cell, options);
     if (found.status == PlanStatus::kSolved) return found.cost;
     EXPECT_EQ(found.status, PlanStatus::kInfeasible);
   } catch (const InputError&) {
@@ -243,7 +243,7 @@ TEST(AdviseWorkcell, IsWhatPlanningTheChangedWorkcellGives) {
     SCOPED_TRACE(trial);
     const Problem cell =
         hard_workcell(robots[random.coin() ? 0 : 1], static_cast<Hard>(trial % 6), random);
-    WorkcellResult result;
+    Answer result;
     try {
       result = plan_workcell(cell, long_enough(2));
     } catch (const InputError&) {  // a path that makes no sense
@@ -256,9 +256,9 @@ TEST(AdviseWorkcell, IsWhatPlanningTheChangedWorkcellGives) {
     }
     ++infeasible;
     ASSERT_FALSE(advice.cell.empty());
-    const auto lacking =
-        static_cast<std::size_t>(std::count_if(result.least_costs.begin(), result.least_costs.end(),
-                                               [](double cost) { return !std::isfinite(cost); }));
+    const auto lacking = static_cast<std::size_t>(
+        std::count_if(result.arms.begin(), result.arms.end(),
+                      [](const ArmAnswer& arm) { return !std::isfinite(arm.run().least_cost); }));
     EXPECT_EQ(advice.arms.size(), lacking);
     conflicts += lacking == 0;
     one_arm += lacking == 1;
@@ -316,7 +316,7 @@ TEST(AdviseWorkcell, LetsTheFollowerLead) {
   ball.shape = Sphere{0.03};
   ball.pose.translation() = Vector3d(0.68, 0.2 - width, 1.05);
   cell.scene.push_back(ball);
-  const WorkcellResult result = plan_workcell(cell, long_enough(2));
+  const Answer result = plan_workcell(cell, long_enough(2));
   ASSERT_EQ(result.status, PlanStatus::kInfeasible);
   int leads = 0;
   for (const WorkcellAdvice& one : advise_workcell(cell, result, long_enough(2)).cell) {
@@ -338,14 +338,14 @@ TEST(AdviseWorkcell, LeavesAGivenMotionAsItIs) {
   for (int trial = 0; trial < count; ++trial) {
     SCOPED_TRACE(trial);
     Problem cell = random_workcell(robot, random);
-    const WorkcellResult both = plan_workcell(cell, long_enough(1));
+    const Answer both = plan_workcell(cell, long_enough(1));
     if (both.status != PlanStatus::kSolved) continue;
     ArmTask& left = cell.arms[0];
-    for (const TrajectoryRow& row : both.arms[0].trajectory) left.given.push_back(row.q);
+    for (const TrajectoryRow& row : both.arms[0].rows()) left.given.push_back(row.q);
     left.path().waypoints.clear();
     add_post(cell, random);
     cell.arms[1].path().limits.joint_margin = random.uniform(0, 0.5);
-    WorkcellResult result;
+    Answer result;
     try {
       result = plan_workcell(cell, long_enough(1));
     } catch (const InputError&) {  // the post is in the way of the given motion
@@ -371,13 +371,13 @@ TEST(AdviseWorkcell, SaysNothingWithoutTimeAndWhereThereIsAPlan) {
   Random random(2);
   Problem cell = random_workcell(data_robot("sda10f"), random);
   cell.arms[0].path().limits.clearance = cell.arms[1].path().limits.clearance = 0.2;
-  const WorkcellResult result = plan_workcell(cell, long_enough(1));
+  const Answer result = plan_workcell(cell, long_enough(1));
   ASSERT_EQ(result.status, PlanStatus::kInfeasible);
   PlanOptions none = long_enough(1);
   none.timeout_s = 1e-6;
   for (const WorkcellAdvice& one : advise_workcell(cell, result, none).cell)
     EXPECT_EQ(one.outcome, Outcome::kUnknown) << words(one);
-  WorkcellResult solved = result;
+  Answer solved = result;
   solved.status = PlanStatus::kSolved;
   EXPECT_TRUE(advise_workcell(cell, solved, none).cell.empty());
   none.planner = PlannerKind::kEager;

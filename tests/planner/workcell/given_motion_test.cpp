@@ -126,30 +126,29 @@ TEST(GivenMotion, CostsAsMuchAsAPlainProgramOverNodes) {
     const auto cell = random_cell_with_given(robots[random.coin() ? 0 : 1], random);
     if (!cell) continue;
     const PreparedWorkcell prepared(*cell);
-    const WorkcellResult found = plan_workcell(prepared, lazily());
-    if (found.least_costs[1] == kNone && random.coin(0.8)) continue;  // these are many
+    const Answer found = plan_workcell(prepared, lazily());
+    if (found.arms[1].run().least_cost == kNone && random.coin(0.8)) continue;  // these are many
     ++drawn;
     ASSERT_EQ(prepared.given_arm(), 0u);
     const double cost = PlainBesideGiven(prepared).cost();
     ASSERT_EQ(found.status == PlanStatus::kSolved, cost < kNone);
-    ASSERT_NE(found.decided_by, WorkcellSearch::kNone);
-    conflicts += found.decided_by != WorkcellSearch::kArmsAlone;
+    ASSERT_NE(found.pair.decided_by, PairSearch::kNone);
+    conflicts += found.pair.decided_by != PairSearch::kArmsAlone;
     if (!(cost < kNone)) {
       ++none;
       continue;
     }
     ++solved;
     followers += cell->leader_of(1) == 0;
-    EXPECT_NEAR(found.arms[1].cost, cost, 1e-9);
-    ASSERT_EQ(found.arms[0].trajectory.size(), cell->arms[0].given.size());
+    EXPECT_NEAR(found.arms[1].cost(), cost, 1e-9);
+    ASSERT_EQ(found.arms[0].rows().size(), cell->arms[0].given.size());
     for (std::size_t row = 0; row < cell->arms[0].given.size(); ++row)
-      EXPECT_EQ(found.arms[0].trajectory[row].q, cell->arms[0].given[row]);
-    const WorkcellCheckResult check =
-        check_workcell(prepared, {found.arms[0].trajectory, found.arms[1].trajectory});
+      EXPECT_EQ(found.arms[0].rows()[row].q, cell->arms[0].given[row]);
+    const WorkcellCheckResult check = check_workcell(prepared, rows_of_arms(found));
     EXPECT_TRUE(check.passed) << (check.failures.empty() ? "" : check.failures.front());
-    if (found.decided_by != WorkcellSearch::kArmsAlone) continue;
+    if (found.pair.decided_by != PairSearch::kArmsAlone) continue;
     const PlanResult own = Planner(prepared.problem(1)).plan(lazily());
-    expect_equal_rows(own.trajectory, found.arms[1].trajectory);
+    expect_equal_rows(own.trajectory, found.arms[1].rows());
     ++alone;
   }
   std::printf(
@@ -223,11 +222,10 @@ TEST(GivenMotion, CheckRefusesOtherRows) {
     const auto cell = random_cell_with_given(robot, random);
     if (!cell) continue;
     const PreparedWorkcell prepared(*cell);
-    const WorkcellResult found = plan_workcell(prepared, lazily());
+    const Answer found = plan_workcell(prepared, lazily());
     if (found.status != PlanStatus::kSolved) continue;
     ++spoilt;
-    std::array<std::vector<TrajectoryRow>, 2> rows{found.arms[0].trajectory,
-                                                   found.arms[1].trajectory};
+    std::array<std::vector<TrajectoryRow>, 2> rows = rows_of_arms(found);
     rows[0][1].q[6] += 1e-7;
     const WorkcellCheckResult check = check_workcell(prepared, rows, {.margins = false});
     EXPECT_FALSE(check.passed);
@@ -314,15 +312,15 @@ std::optional<Problem> random_cell_led_by_six_joints(const TestRobot& robot, Ran
 
 /// Returns how far, m and rad, the right tool is off its path on the real tool of the left arm.
 std::pair<double, double> off_real_tool(const Problem& cell, const PreparedWorkcell& prepared,
-                                        const WorkcellResult& found) {
+                                        const Answer& found) {
   double off = 0, turned = 0;
   const std::size_t rows = cell.arms[0].given.size();
   const auto& waypoints = cell.arms[1].path().waypoints;
   for (std::size_t row = 0; row < rows; ++row) {
     const double t = static_cast<double>(row) / static_cast<double>(rows - 1);
     const Pose on_tool =
-        real_tool(prepared.robot(0).arm().chain, found.arms[0].trajectory[row].q).inverse() *
-        prepared.robot(1).arm().chain.tool(found.arms[1].trajectory[row].q);
+        real_tool(prepared.robot(0).arm().chain, found.arms[0].rows()[row].q).inverse() *
+        prepared.robot(1).arm().chain.tool(found.arms[1].rows()[row].q);
     const Vector3d there =
         waypoints[0].position + t * (waypoints[1].position - waypoints[0].position);
     off = std::max(off, (on_tool.translation() - there).norm());
@@ -343,14 +341,13 @@ TEST(GivenMotion, CarriesItsFollowerOnTheToolAsSixJointsHaveTurnedIt) {
     const auto cell = random_cell_led_by_six_joints(robot, random);
     if (!cell) continue;
     const PreparedWorkcell prepared(*cell);
-    const WorkcellResult found = plan_workcell(prepared, lazily());
+    const Answer found = plan_workcell(prepared, lazily());
     if (found.status != PlanStatus::kSolved) continue;
     ++solved;
     const auto [off, turned] = off_real_tool(*cell, prepared, found);
     EXPECT_LE(off, 2e-6);
     EXPECT_LE(turned, 2e-6);
-    const std::array<std::vector<TrajectoryRow>, 2> rows{found.arms[0].trajectory,
-                                                         found.arms[1].trajectory};
+    const std::array<std::vector<TrajectoryRow>, 2> rows = rows_of_arms(found);
     const WorkcellCheckResult check = check_workcell(prepared, rows);
     EXPECT_TRUE(check.passed) << (check.failures.empty() ? "" : check.failures.front());
     // What the file says of the roll does not matter: the joints say where the tool is.

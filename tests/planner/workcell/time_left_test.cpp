@@ -46,14 +46,14 @@ TEST(TimeLeft, AnArmOfAWorkcellIsDiagnosedInIt) {
   Random random(seed("TimeLeft.Workcell"));
   Problem cell = random_workcell(data_robot("sda10f"), random);
   cell.arms[1].path().waypoints[1].position.x() += 0.6;  // out of reach
-  const WorkcellResult whole = plan_workcell(cell);
+  const Answer whole = plan_workcell(cell);
   ASSERT_EQ(whole.status, PlanStatus::kInfeasible);
-  ASSERT_TRUE(whole.arms[1].diagnosis.complete);
+  ASSERT_TRUE(whole.arms[1].run().diagnosis->complete);
   const PreparedWorkcell prepared(cell);
   EXPECT_FALSE(is_complete([&](const PlanOptions& options) {
-    const WorkcellResult result = plan_workcell(prepared, options);
+    const Answer result = plan_workcell(prepared, options);
     EXPECT_EQ(result.status, PlanStatus::kInfeasible);
-    return result.arms[1].diagnosis;
+    return *result.arms[1].run().diagnosis;
   }));
 }
 
@@ -63,10 +63,10 @@ TEST(TimeLeft, AStrokeIsDiagnosedInIt) {
   job.arm().strokes[0].resolution = {.ds = 0.02, .dphi = 0.1};
   job.arm().strokes[0].waypoints.back().position.x() += 3;  // out of reach
   const PreparedRobot robot(problem_of_run(job, {0, false}));
-  const auto diagnosis_of = [](const JobResult& result) {
+  const auto diagnosis_of = [](const Answer& result) {
     EXPECT_EQ(result.status, PlanStatus::kInfeasible);
-    EXPECT_TRUE(result.runs.at(0).diagnosis);
-    return result.runs.at(0).diagnosis.value_or(Diagnosis());
+    EXPECT_TRUE(result.arm().runs.at(0).diagnosis);
+    return result.arm().runs.at(0).diagnosis.value_or(Diagnosis());
   };
   ASSERT_TRUE(diagnosis_of(plan_job(robot, job)).complete);
   EXPECT_FALSE(is_complete(

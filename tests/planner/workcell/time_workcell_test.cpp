@@ -258,12 +258,11 @@ Timed timed_workcell(const TestRobot& robot, Kind kind, Random& random) {
   } catch (const InputError&) {
     return timed;  // a follower whose tool stands still
   }
-  const WorkcellResult found = plan_workcell(*timed.prepared, lazily());
+  const Answer found = plan_workcell(*timed.prepared, lazily());
   timed.solved = found.status == PlanStatus::kSolved;
   if (timed.solved)
     timed.timing =
-        time_workcell(*timed.prepared, {found.arms[0].trajectory, found.arms[1].trajectory},
-                      {.speed = timed.speed, .rate = rate});
+        time_workcell(*timed.prepared, rows_of_arms(found), {.speed = timed.speed, .rate = rate});
   return timed;
 }
 
@@ -398,18 +397,17 @@ TEST(WorkcellMotion, StopsWhereABlendWouldBringTheArmsTogether) {
   const PreparedWorkcell loose(chase(0.001));
   PlanOptions options = lazily();
   options.evidence = Evidence::all();
-  const WorkcellResult found = plan_workcell(loose, options);
+  const Answer found = plan_workcell(loose, options);
   ASSERT_EQ(found.status, PlanStatus::kSolved);
-  const std::array<std::vector<TrajectoryRow>, 2> rows{found.arms[0].trajectory,
-                                                       found.arms[1].trajectory};
+  const std::array<std::vector<TrajectoryRow>, 2> rows = rows_of_arms(found);
   const WorkcellTiming passing = time_workcell(loose, rows, {.speed = 0.1});
   ASSERT_TRUE(passing.motion);
   EXPECT_EQ(passing.motion->blended, 1);
   EXPECT_TRUE(passing.motion->arms[0].stops.empty());
-  ASSERT_TRUE(found.between_arms);
-  const double nearest = found.between_arms->clearance;
+  ASSERT_TRUE(found.pair.nearest);
+  const double nearest = found.pair.nearest->clearance;
   std::printf("nearest to each other %.2f mm at rows: %s and %s\n", 1e3 * nearest,
-              found.between_arms->bodies[0].c_str(), found.between_arms->bodies[1].c_str());
+              found.pair.nearest->bodies[0].c_str(), found.pair.nearest->bodies[1].c_str());
   // At rows the arms keep what they must, but not while one tool comes early.
   const PreparedWorkcell tight(chase(nearest - 0.5e-3));
   const WorkcellTiming stopping = time_workcell(tight, rows, {.speed = 0.1});
@@ -444,12 +442,11 @@ TEST(RefineWorkcell, IsCheaperAndValid) {
     } catch (const InputError&) {
       continue;  // a follower whose tool stands still
     }
-    const WorkcellResult found = plan_workcell(*prepared, lazily());
+    const Answer found = plan_workcell(*prepared, lazily());
     if (found.status != PlanStatus::kSolved) continue;
     ++solved;
-    in_conflict += found.decided_by != WorkcellSearch::kArmsAlone;
-    const std::array<std::vector<TrajectoryRow>, 2> rows{found.arms[0].trajectory,
-                                                         found.arms[1].trajectory};
+    in_conflict += found.pair.decided_by != PairSearch::kArmsAlone;
+    const std::array<std::vector<TrajectoryRow>, 2> rows = rows_of_arms(found);
     const RefinedWorkcell refined = refine_workcell(*prepared, rows);
     EXPECT_NEAR(refined.cost_before, found.cost, 1e-9 * found.cost);
     EXPECT_LE(refined.cost, refined.cost_before);
@@ -501,7 +498,7 @@ TEST(RefineWorkcell, IsPlannedTimedAndProvedInOneCall) {
     PlanOptions options = lazily();
     options.check = true;
     options.evidence = Evidence::all();
-    const WorkcellResult plain = plan_workcell(*prepared, options);
+    const Answer plain = plan_workcell(*prepared, options);
     WorkcellView view;
     const TimingOptions timing{.speed = 0.25};
     const WorkcellMotionPlan plan = plan_workcell_motion(*prepared, options, true, timing, &view);
@@ -514,20 +511,18 @@ TEST(RefineWorkcell, IsPlannedTimedAndProvedInOneCall) {
     EXPECT_EQ(plan.refinement->cost_before, plain.cost);
     cheaper += plan.result.cost < plain.cost;
     for (std::size_t k = 0; k < 2; ++k) {
-      const PlanResult& arm = plan.result.arms[k];
-      EXPECT_EQ(arm.lattice.cost, plain.arms[k].cost);
-      EXPECT_EQ(arm.evidence.postures, plain.arms[k].evidence.postures);
+      const ArmAnswer& arm = plan.result.arms[k];
+      EXPECT_EQ(arm.run().lattice.cost, plain.arms[k].cost());
+      EXPECT_EQ(arm.run().evidence.postures, plain.arms[k].run().evidence.postures);
       const std::vector<TrajectoryRow>& rows = plan.refinement->arms[k].rows;
-      ASSERT_EQ(arm.trajectory.size(), rows.size());
-      for (std::size_t row = 0; row < rows.size(); ++row)
-        EXPECT_EQ(arm.trajectory[row].q, rows[row].q);
+      ASSERT_EQ(arm.rows().size(), rows.size());
+      for (std::size_t row = 0; row < rows.size(); ++row) EXPECT_EQ(arm.rows()[row].q, rows[row].q);
     }
-    const WorkcellCheckResult check =
-        check_workcell(*prepared, {plan.result.arms[0].trajectory, plan.result.arms[1].trajectory});
+    const WorkcellCheckResult check = check_workcell(*prepared, rows_of_arms(plan.result));
     EXPECT_TRUE(check.passed);
-    ASSERT_EQ(plan.result.between_arms.has_value(), check.between.has_value());
+    ASSERT_EQ(plan.result.pair.nearest.has_value(), check.between.has_value());
     if (check.between) {
-      EXPECT_NEAR(plan.result.between_arms->margin, check.between->margin, 1e-9);
+      EXPECT_NEAR(plan.result.pair.nearest->margin, check.between->margin, 1e-9);
     }
     ASSERT_TRUE(plan.timing);
     if (!plan.timing->motion) continue;
@@ -558,11 +553,10 @@ TEST(RefineWorkcell, RefinesAndTimesRowsOfOtherPlans) {
     } catch (const InputError&) {
       continue;  // a follower whose tool stands still
     }
-    const WorkcellResult plain = plan_workcell(*planned, lazily());
+    const Answer plain = plan_workcell(*planned, lazily());
     if (plain.status != PlanStatus::kSolved) continue;
     ++solved;
-    const std::array<std::vector<TrajectoryRow>, 2> rows{plain.arms[0].trajectory,
-                                                         plain.arms[1].trajectory};
+    const std::array<std::vector<TrajectoryRow>, 2> rows = rows_of_arms(plain);
     std::optional<RefinedWorkcellMotion> found;
     try {
       found = refine_and_time_workcell(*prepared, rows, {.speed = 0.25});
@@ -593,14 +587,14 @@ TEST(RefineWorkcell, LeavesUnrefinedPlansAsTheyAre) {
   for (int trial = 0; trial < trials(12); ++trial) {
     const Problem cell = random_workcell(robot, random);
     const PreparedWorkcell prepared(cell);
-    const WorkcellResult plain = plan_workcell(prepared, lazily());
+    const Answer plain = plan_workcell(prepared, lazily());
     const WorkcellMotionPlan plan = plan_workcell_motion(prepared, lazily(), false, std::nullopt);
     EXPECT_FALSE(plan.refinement || plan.timing || plan.stopped);
     EXPECT_EQ(plan.result.cost, plain.cost);
     for (std::size_t k = 0; k < 2; ++k) {
-      ASSERT_EQ(plan.result.arms[k].trajectory.size(), plain.arms[k].trajectory.size());
-      for (std::size_t row = 0; row < plain.arms[k].trajectory.size(); ++row)
-        EXPECT_EQ(plan.result.arms[k].trajectory[row].q, plain.arms[k].trajectory[row].q);
+      ASSERT_EQ(plan.result.arms[k].rows().size(), plain.arms[k].rows().size());
+      for (std::size_t row = 0; row < plain.arms[k].rows().size(); ++row)
+        EXPECT_EQ(plan.result.arms[k].rows()[row].q, plain.arms[k].rows()[row].q);
     }
   }
 }

@@ -234,9 +234,10 @@ TEST(WorkcellCertificate, IsVerifiedAndForgedOnesAreRefused) {
     if (!drawn) continue;
     const Problem& cell = *drawn;
     const PreparedWorkcell prepared(cell);
-    const WorkcellResult found = plan_workcell(prepared, lazily());
+    const Answer found = plan_workcell(prepared, lazily());
     if (found.status != PlanStatus::kInfeasible) continue;
-    const bool alone = found.least_costs[0] == kNone || found.least_costs[1] == kNone;
+    const bool alone =
+        found.arms[0].run().least_cost == kNone || found.arms[1].run().least_cost == kNone;
     if (alone && random.coin(0.95)) continue;  // these are many, and of one set
     const WorkcellCertificate certificate = prove_infeasible(prepared);
     const WorkcellCertificateCheck check = verify_certificate(prepared, certificate);

@@ -161,23 +161,22 @@ TEST(Workcell, CostsAsMuchAsAPlainProgramOverPairs) {
     Problem cell = random_workcell(robots[static_cast<std::size_t>(which)], random);
     if (random.coin()) cell.scene.push_back(random_post(random));
     const PreparedWorkcell prepared(cell);
-    const WorkcellResult found = plan_workcell(prepared, lazily());
-    const double least = found.least_costs[0] + found.least_costs[1];
-    conflicts += found.decided_by == WorkcellSearch::kRegions ||
-                 found.decided_by == WorkcellSearch::kProduct;
+    const Answer found = plan_workcell(prepared, lazily());
+    const double least = found.arms[0].run().least_cost + found.arms[1].run().least_cost;
+    conflicts += found.pair.decided_by == PairSearch::kRegions ||
+                 found.pair.decided_by == PairSearch::kProduct;
     const double cost = PlainProgram(prepared).cost();
     ASSERT_EQ(found.status == PlanStatus::kSolved, cost < kNone);
-    ASSERT_NE(found.decided_by, WorkcellSearch::kNone);
+    ASSERT_NE(found.pair.decided_by, PairSearch::kNone);
     (cost < kNone ? solved : none) += 1;
     if (!(cost < kNone)) continue;
     inexact += which > 1;
-    EXPECT_NEAR(found.arms[0].lattice.cost + found.arms[1].lattice.cost, cost, 1e-9);
+    EXPECT_NEAR(found.arms[0].run().lattice.cost + found.arms[1].run().lattice.cost, cost, 1e-9);
     if (which < 2) {  // joints of rows are those of nodes
       EXPECT_NEAR(found.cost, cost, 1e-9);
       EXPECT_LE(least, found.cost + 1e-9);
     }
-    const WorkcellCheckResult check =
-        check_workcell(prepared, {found.arms[0].trajectory, found.arms[1].trajectory});
+    const WorkcellCheckResult check = check_workcell(prepared, rows_of_arms(found));
     EXPECT_TRUE(check.passed) << (check.failures.empty() ? "" : check.failures.front());
   }
   std::printf("%d workcells: %d solved, %d of them of inexact arms, %d none, %d with a conflict\n",
@@ -195,13 +194,13 @@ TEST(Workcell, IsTheAnswerOfEachArmWhereTheseDoNotMeet) {
   for (int trial = 0; trial < count; ++trial) {
     const Problem cell = random_workcell(robot, random);
     const PreparedWorkcell prepared(cell);
-    const WorkcellResult found = plan_workcell(prepared, lazily());
-    if (found.decided_by != WorkcellSearch::kArmsAlone || found.status != PlanStatus::kSolved)
+    const Answer found = plan_workcell(prepared, lazily());
+    if (found.pair.decided_by != PairSearch::kArmsAlone || found.status != PlanStatus::kSolved)
       continue;
     ++alone;
     for (std::size_t k = 0; k < 2; ++k) {
       const PlanResult own = Planner(prepared.problem(k)).plan(lazily());
-      expect_equal_rows(own.trajectory, found.arms[k].trajectory);
+      expect_equal_rows(own.trajectory, found.arms[k].rows());
     }
   }
   EXPECT_GE(alone, at_least(count / 5));
@@ -214,16 +213,15 @@ TEST(Workcell, IsTheSameOnTwoThreads) {
   for (int trial = 0; trial < count; ++trial) {
     const Problem cell = random_workcell(robot, random);
     const PreparedWorkcell prepared(cell);
-    const WorkcellResult one = plan_workcell(prepared, lazily());
+    const Answer one = plan_workcell(prepared, lazily());
     PlanOptions parallel = lazily();
     parallel.planner = PlannerKind::kParallel;
     parallel.threads = 2;
-    const WorkcellResult two = plan_workcell(prepared, parallel);
+    const Answer two = plan_workcell(prepared, parallel);
     ASSERT_EQ(one.status, two.status);
     EXPECT_EQ(one.cost, two.cost);
-    EXPECT_EQ(one.counters.rounds, two.counters.rounds);
-    for (std::size_t k = 0; k < 2; ++k)
-      expect_equal_rows(one.arms[k].trajectory, two.arms[k].trajectory);
+    EXPECT_EQ(one.pair.counters.rounds, two.pair.counters.rounds);
+    for (std::size_t k = 0; k < 2; ++k) expect_equal_rows(one.arms[k].rows(), two.arms[k].rows());
   }
 }
 
@@ -234,16 +232,16 @@ TEST(Workcell, BeginsAndEndsInGivenPostures) {
   const int count = trials(40);
   for (int trial = 0; trial < count; ++trial) {
     Problem cell = random_workcell(robot, random);
-    const WorkcellResult free = plan_workcell(cell, lazily());
+    const Answer free = plan_workcell(cell, lazily());
     if (free.status != PlanStatus::kSolved) continue;
-    cell.arms[0].path().end = free.arms[0].trajectory.back().q;
-    cell.arms[1].path().start = free.arms[1].trajectory.front().q;
+    cell.arms[0].path().end = free.arms[0].rows().back().q;
+    cell.arms[1].path().start = free.arms[1].rows().front().q;
     const PreparedWorkcell prepared(cell);
-    const WorkcellResult given = plan_workcell(prepared, lazily());
+    const Answer given = plan_workcell(prepared, lazily());
     ASSERT_EQ(given.status, PlanStatus::kSolved);
     EXPECT_NEAR(given.cost, free.cost, 1e-6 * free.cost);
-    EXPECT_EQ(given.arms[0].trajectory.back().q, *cell.arms[0].path().end);
-    EXPECT_EQ(given.arms[1].trajectory.front().q, *cell.arms[1].path().start);
+    EXPECT_EQ(given.arms[0].rows().back().q, *cell.arms[0].path().end);
+    EXPECT_EQ(given.arms[1].rows().front().q, *cell.arms[1].path().start);
     ++solved;
   }
   EXPECT_GE(solved, at_least(count / 5));
@@ -266,15 +264,14 @@ TEST(Workcell, FollowsALeader) {
                       Eigen::AngleAxisd(0.1, Vector3d::UnitZ()));
     }
     const PreparedWorkcell prepared(cell);
-    const WorkcellResult found = plan_workcell(prepared, lazily());
+    const Answer found = plan_workcell(prepared, lazily());
     if (found.status != PlanStatus::kSolved) continue;
     ++solved;
     const Chain &left = prepared.robot(0).arm().chain, &follower = prepared.robot(1).arm().chain;
-    const auto& rows = found.arms;
-    const std::size_t last = rows[0].trajectory.size() - 1;
+    const auto rows = rows_of_arms(found);
+    const std::size_t last = rows[0].size() - 1;
     for (const std::size_t row : {std::size_t{0}, last / 2, last}) {
-      const Pose relative =
-          left.tool(rows[0].trajectory[row].q).inverse() * follower.tool(rows[1].trajectory[row].q);
+      const Pose relative = left.tool(rows[0][row].q).inverse() * follower.tool(rows[1][row].q);
       const double t = static_cast<double>(row) / static_cast<double>(last);
       EXPECT_NEAR((relative.translation() - Vector3d(0.05 * t, 0.18, 0.02)).norm(), 0, 1e-6);
     }
@@ -308,14 +305,14 @@ TEST(Workcell, CarriesABarWithTwoHands) {
     }
     cell.arms[1].path().path_frame = "left";
     const PreparedWorkcell prepared(cell);
-    const WorkcellResult found = plan_workcell(prepared, lazily());
+    const Answer found = plan_workcell(prepared, lazily());
     if (found.status != PlanStatus::kSolved) continue;
     ++solved;
     const Chain &left = prepared.robot(0).arm().chain, &right = prepared.robot(1).arm().chain;
     const auto off = [&](const Config& l, const Config& r) {
       return (left.tool(l).inverse() * right.tool(r).translation() - Vector3d(0, -width, 0)).norm();
     };
-    const auto &a = found.arms[0].trajectory, &b = found.arms[1].trajectory;
+    const auto &a = found.arms[0].rows(), &b = found.arms[1].rows();
     for (std::size_t row = 0; row < a.size(); ++row) {
       at_rows = std::max(at_rows, off(a[row].q, b[row].q));
       if (row + 1 == a.size()) continue;
@@ -339,10 +336,9 @@ TEST(Workcell, CheckRefusesSpoiltAnswers) {
   for (int trial = 0; trial < count; ++trial) {
     const Problem cell = random_workcell(robot, random);
     const PreparedWorkcell prepared(cell);
-    const WorkcellResult found = plan_workcell(prepared, lazily());
+    const Answer found = plan_workcell(prepared, lazily());
     if (found.status == PlanStatus::kSolved) {
-      const std::array<std::vector<TrajectoryRow>, 2> rows{found.arms[0].trajectory,
-                                                           found.arms[1].trajectory};
+      const std::array<std::vector<TrajectoryRow>, 2> rows = rows_of_arms(found);
       const CheckOptions quick{.margins = false};
       auto joint = rows;
       joint[random.below(2)][rows[0].size() / 2].q[3] += 0.01;
@@ -355,8 +351,8 @@ TEST(Workcell, CheckRefusesSpoiltAnswers) {
       EXPECT_FALSE(check_workcell(prepared, swapped, quick).passed);
       spoilt += 3;
     }
-    if (found.decided_by == WorkcellSearch::kArmsAlone || found.least_costs[0] == kNone ||
-        found.least_costs[1] == kNone)
+    if (found.pair.decided_by == PairSearch::kArmsAlone ||
+        found.arms[0].run().least_cost == kNone || found.arms[1].run().least_cost == kNone)
       continue;
     // The answers of both arms alone meet each other, and the check says so.
     std::array<std::vector<TrajectoryRow>, 2> alone;
@@ -429,18 +425,18 @@ TEST(Workcell, ShowsWhatItFoundOut) {
     if (random.coin()) cell.scene.push_back(random_post(random));
     const PreparedWorkcell prepared(cell);
     WorkcellView view;
-    const WorkcellResult found = plan_workcell(prepared, lazily(), &view);
+    const Answer found = plan_workcell(prepared, lazily(), &view);
     EXPECT_EQ(found.cost, plan_workcell(prepared, lazily()).cost);
     ASSERT_EQ(view.arms.size(), 2u);
-    const bool met = found.decided_by != WorkcellSearch::kArmsAlone;
+    const bool met = found.pair.decided_by != PairSearch::kArmsAlone;
     EXPECT_EQ(view.region.has_value(), met);
     for (std::size_t k = 0; k < 2; ++k) {
       const PlanView& arm = view.arms[k];
-      const bool has_path = found.least_costs[k] < kNone;
+      const bool has_path = found.arms[k].run().least_cost < kNone;
       EXPECT_EQ(view.alone[k].empty(), !has_path);
       without += has_path ? 0 : 1;
       if (found.status == PlanStatus::kSolved) {
-        expect_equal_rows(arm.lattice.path_rows(arm.path), found.arms[k].trajectory);
+        expect_equal_rows(arm.lattice.path_rows(arm.path), found.arms[k].rows());
         ++answers;
       } else if (has_path) {
         EXPECT_EQ(arm.path, view.alone[k]);
@@ -451,8 +447,8 @@ TEST(Workcell, ShowsWhatItFoundOut) {
     if (!met) continue;
     ++regions;
     expect_conflict(prepared, view, random);
-    if (!found.conflict || found.conflict->of_motion) continue;
-    expect_meeting(prepared, view, *found.conflict);
+    if (!found.pair.conflict || found.pair.conflict->of_motion) continue;
+    expect_meeting(prepared, view, *found.pair.conflict);
     ++meetings;
   }
   std::printf("%d workcells: %d answers of arms, %d regions, %d meetings, %d arms without a path\n",

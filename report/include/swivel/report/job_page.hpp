@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "swivel/core/answer/job_result.hpp"
+#include "swivel/core/answer/answer.hpp"
 #include "swivel/core/motion/job_motion.hpp"
 #include "swivel/planner/job/job_view.hpp"
 #include "swivel/report/page.hpp"
@@ -13,7 +13,7 @@ namespace swivel {
 struct PlannedJob {
   const PreparedRobot& robot;
   const Problem& job;
-  const JobResult& result;
+  const Answer& result;
   const JobView& view;
   const JobMotion* motion = nullptr;  ///< null where the job was not timed or has no motion
 };

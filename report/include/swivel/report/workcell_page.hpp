@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "swivel/core/answer/workcell_result.hpp"
+#include "swivel/core/answer/answer.hpp"
 #include "swivel/core/motion/workcell_motion.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
 #include "swivel/planner/workcell/workcell_view.hpp"
@@ -14,7 +14,7 @@ namespace swivel {
 struct PlannedWorkcell {
   const PreparedWorkcell& prepared;
   const Problem& cell;
-  const WorkcellResult& result;
+  const Answer& result;
   const WorkcellView& view;
   const WorkcellMotion* motion = nullptr;  ///< of the result's trajectories; null if there is none
 };

@@ -4,20 +4,26 @@
 #include <vector>
 
 #include "swivel/core/answer/advice.hpp"
+#include "swivel/core/answer/answer.hpp"
 #include "swivel/core/answer/infeasibility_certificate.hpp"
 #include "swivel/core/answer/plan.hpp"
-#include "swivel/core/answer/workcell_result.hpp"
 
 namespace swivel {
 
-/// Returns the answer of a plan for people, in one line: whether there is a path, and what it comes
-/// near to, as far as that was asked for. Where there is no path, it says what ends every path,
-/// with further lines for every run of layers that are empty for one cause.
+/// Returns the answer to a problem for people. Of one path, in one line: whether there is a path,
+/// and what it comes near to, as far as that was asked for; where there is none, what ends every
+/// path, with further lines for every run of layers that are empty for one cause. Of strokes, the
+/// verdict, then a table with a line for each stroke in the order in which they are run, and a line
+/// about the transitions; where there is no answer, which stroke has no path and why, or between
+/// which two there is no way. Of two arms, what both do together, then a line about each arm; where
+/// there is no answer, why. `problem` is executed_problem() of the answer.
+[[nodiscard]] std::string answer_text(const Answer& answer, const Problem& problem);
+/// Returns the answer of the plan of one path, as answer_text() has that of its problem.
 [[nodiscard]] std::string answer_text(const PlanResult& result);
-
-/// Returns the answer of a workcell for people: what both arms do together, then a line about each
-/// arm; where there is no plan, why.
-[[nodiscard]] std::string answer_text(const WorkcellResult& result);
+/// Returns what was found about a run, in the words of the answer of one path. `part`: its rows;
+/// null where there are none.
+[[nodiscard]] std::string run_text(const RunAnswer& run, const std::vector<HeldJoint>& held,
+                                   const Part* part = nullptr);
 
 /// Returns a line for each change that was tried, and one for those that were not, in the order
 /// given.

@@ -10,6 +10,7 @@
 #include "swivel/core/answer/cause.hpp"
 #include "swivel/core/base/types.hpp"
 #include "swivel/core/problem/held_joint.hpp"
+#include "swivel/core/problem/stroke.hpp"
 
 namespace swivel {
 
@@ -245,13 +246,24 @@ struct Measures {
 /// where all is known.
 [[nodiscard]] std::string words_of_unmeasured(const Measures& measures);
 
-/// What a plan found. Its measures are those of the trajectory, where there is one.
-struct PlanResult : Measures {
+/// What was found out about one run of a stroke. Its measures are those of its rows, where it has
+/// some.
+struct RunAnswer : Measures {
+  StrokeRun run;  ///< of a problem of one path: its stroke, forwards
+  /// How the plan of the run ended: of a run among others, of the run by itself.
   PlanStatus status = PlanStatus::kInfeasible;
+  /// Cost in its lattice of the cheapest path of the run by itself; infinite where it has none. Not
+  /// known of a problem of one path.
+  double least_cost = 0;
+  LatticeInfo lattice;
+  std::optional<Diagnosis> diagnosis;  ///< of a run that has no path by itself
+};
+
+/// What the plan of one path found.
+struct PlanResult : RunAnswer {
   double cost = 0;  ///< cost of the trajectory
   std::string planner;
   int threads = 1;
-  LatticeInfo lattice;
   Counters counters;
   /// By stage: load, prepare, plan, check, report and others.
   std::map<std::string, double> time_ms;
@@ -263,7 +275,6 @@ struct PlanResult : Measures {
   std::vector<TrajectoryRow> partial;
   std::array<std::string, kDof> joint_names;
   std::vector<HeldJoint> held;  ///< joints between base and tip that are not planned
-  Diagnosis diagnosis;          ///< filled when infeasible
   /// Pairs that touch in every posture, which are not kept apart.
   std::vector<SpecialPair> dropped_pairs;
   /// Pairs near each other by design, which must keep less.

@@ -22,7 +22,7 @@ struct ProcessEvent {
 /// between.
 struct JobMotion {
   std::vector<TimedRow> rows;  ///< at t = k / rate
-  /// Index in JobResult::parts of the part to which each row leads; the first row belongs to the
+  /// Index in Answer::parts of the part to which each row leads; the first row belongs to the
   /// first part. The row between a run and a transition has the run's s, arm angle and branch;
   /// other rows of transitions have none.
   std::vector<std::size_t> part;
@@ -39,7 +39,7 @@ struct JobMotion {
 struct JobTimingResult {
   std::optional<JobMotion> motion;
   std::optional<NoMotion> failure;  ///< set unless there is a motion
-  std::size_t failed_part = 0;      ///< index in JobResult::parts, for `failure`
+  std::size_t failed_part = 0;      ///< index in Answer::parts, for `failure`
 };
 
 }  // namespace swivel

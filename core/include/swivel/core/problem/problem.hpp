@@ -129,6 +129,9 @@ struct LiftOff {
 [[nodiscard]] std::optional<std::size_t> find_stroke(const Problem& problem,
                                                      const std::string& name);
 
+/// Returns a run in words: "'ring'", or "'ring' backwards".
+[[nodiscard]] std::string words(const StrokeRun& run, const Problem& problem);
+
 /// Returns the problem that a path of an arm poses by itself: `path` is the task of one of its
 /// strokes, as it is.
 [[nodiscard]] PathProblem problem_of_path(const Problem& problem, const ArmTask& arm,

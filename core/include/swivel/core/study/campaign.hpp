@@ -5,9 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/answer/job_result.hpp"
-#include "swivel/core/answer/plan.hpp"
-#include "swivel/core/answer/workcell_result.hpp"
+#include "swivel/core/answer/answer.hpp"
 #include "swivel/core/problem/path_problem.hpp"
 #include "swivel/core/problem/problem.hpp"
 
@@ -61,17 +59,11 @@ struct EpisodeRow {
   std::vector<double> offsets;  ///< of the varied_coordinates(), m and rad
 
   EpisodeRow() = default;
-  /// Takes an episode's row from its result, for which Evidence::tool_path_error must have been
-  /// asked. `problem` may be that of any episode.
-  EpisodeRow(std::uint64_t episode, const PlanResult& result, const PathProblem& problem);
-  /// Takes an episode's row from the result of its job, for which Evidence::tool_path_error must
-  /// have been asked. Its plan_ms is the time that lattices, search and order took; its mean error
-  /// is that of the strokes, weighted by their steps. `job` may be that of any episode.
-  EpisodeRow(std::uint64_t episode, const JobResult& result, const Problem& job);
-  /// Takes an episode's row from the result of its workcell, for which Evidence::tool_path_error
-  /// must have been asked. Its plan_ms is the time that lattices and search took, its counters are
-  /// those of both arms, its mean error is that of both paths. `cell` may be that of any episode.
-  EpisodeRow(std::uint64_t episode, const WorkcellResult& result, const Problem& cell);
+  /// Takes an episode's row from its answer, for which Evidence::tool_path_error must have been
+  /// asked. Its plan_ms is the time that lattices, search and order took; its counters are those of
+  /// all arms; its mean error is that of all runs, weighted by their steps. `problem` may be that
+  /// of any episode.
+  EpisodeRow(std::uint64_t episode, const Answer& answer, const Problem& problem);
   /// Makes the row of an episode that ended with an internal error.
   EpisodeRow(std::uint64_t episode, std::string error_message);
 };

@@ -3,13 +3,12 @@
 #include <optional>
 #include <string>
 
-#include "swivel/core/answer/job_result.hpp"
-#include "swivel/core/answer/workcell_result.hpp"
+#include "swivel/core/answer/answer.hpp"
 #include "swivel/core/problem/problem.hpp"
 
 namespace swivel {
 
-/// Why a job or a workcell has no plan, as tables of campaigns and placements say it.
+/// Why a problem has no answer, as tables of campaigns and placements say it.
 struct StudyFailure {
   /// Furthest that a valid path of the failed stroke or arm comes, m along it; none where not even
   /// the first layer has a node, and where the cause is "transition" or "conflict".
@@ -29,11 +28,8 @@ struct StudyFailure {
     row.reason = reason;
   }
 };
-/// Returns why the first stroke that has no path by itself has none, else why there is no
-/// transition. `result` is that of an infeasible `job`.
-[[nodiscard]] StudyFailure failure_of(const JobResult& result, const Problem& job);
-/// Returns why the first arm that has no path by itself has none, else where both arms bar each
-/// other. `result` is that of an infeasible `cell`.
-[[nodiscard]] StudyFailure failure_of(const WorkcellResult& result, const Problem& cell);
+/// Returns why the first run that has no path by itself has none, else why there is no transition,
+/// or where both arms bar each other. `answer` is that of an infeasible `problem`.
+[[nodiscard]] StudyFailure failure_of(const Answer& answer, const Problem& problem);
 
 }  // namespace swivel

@@ -6,16 +6,11 @@
 #include <variant>
 #include <vector>
 
-#include "swivel/core/answer/job_result.hpp"
+#include "swivel/core/answer/answer.hpp"
 #include "swivel/core/motion/job_motion.hpp"
 #include "swivel/io/motions/motion.hpp"
 
 namespace swivel::io {
-
-/// Returns TRAJ.csv of a job: the columns of a trajectory, then `stroke` and `process`. Rows of the
-/// parts follow each other, ends of transitions included, which are the rows beside them once more.
-/// It has the column `roll` if a row of a stroke has a roll.
-[[nodiscard]] std::string to_job_csv(const JobResult& result, const Problem& job);
 
 /// A part of a job's trajectory as read from a file: a run of a stroke, or a transition.
 struct JobTrajectoryPart {

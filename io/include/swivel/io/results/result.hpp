@@ -6,12 +6,11 @@
 #include <vector>
 
 #include "swivel/core/answer/advice.hpp"
+#include "swivel/core/answer/answer.hpp"
 #include "swivel/core/answer/infeasibility_certificate.hpp"
-#include "swivel/core/answer/job_result.hpp"
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/answer/refined.hpp"
 #include "swivel/core/answer/workcell_certificate.hpp"
-#include "swivel/core/answer/workcell_result.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/motion/job_motion.hpp"
 #include "swivel/core/motion/timed_path.hpp"
@@ -40,7 +39,7 @@ struct JobExtras {
 };
 /// Returns RESULT.json of a job as text, docs/formats.md "Result of a job". What describes the
 /// rows is null unless there are some, `motion` unless one was asked for.
-[[nodiscard]] std::string to_job_json(const JobResult& result, const Problem& job,
+[[nodiscard]] std::string to_job_json(const Answer& result, const Problem& job,
                                       const JobExtras& extras = {});
 /// What followed the plan of a workcell.
 struct WorkcellExtras {
@@ -51,8 +50,7 @@ struct WorkcellExtras {
   bool stopped = false;                      ///< time ran out before the motion that was asked for
 };
 /// Returns RESULT.json of a workcell as text, docs/formats.md "Result of a workcell".
-[[nodiscard]] std::string to_workcell_json(const WorkcellResult& result,
-                                           const WorkcellExtras& extras = {});
+[[nodiscard]] std::string to_workcell_json(const Answer& result, const WorkcellExtras& extras = {});
 /// Returns RESULT.json for an internal error: its status is "error".
 [[nodiscard]] std::string error_json(const std::string& message);
 /// Returns the timeline in Chrome's trace event format, which Perfetto and speedscope open.

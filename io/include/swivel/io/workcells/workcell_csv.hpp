@@ -6,17 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/answer/workcell_result.hpp"
+#include "swivel/core/answer/answer.hpp"
 #include "swivel/core/motion/workcell_motion.hpp"
 #include "swivel/io/motions/motion.hpp"
 
 namespace swivel::io {
 
-/// Returns the trajectories of both arms as CSV, one row for each layer: for each arm s, phi and
-/// branch, named after it, then the joints of both by name. Rolls are not in it.
-[[nodiscard]] std::string to_workcell_csv(const WorkcellResult& result);
 /// Returns a timed motion of both arms as CSV, one row for each sample: the column t, those of
-/// to_workcell_csv(), then the joints of both with _v (rad/s) and _a (rad/s^2).
+/// to_csv(), then the joints of both with _v (rad/s) and _a (rad/s^2).
 [[nodiscard]] std::string to_workcell_motion_csv(const WorkcellMotion& motion,
                                                  const std::array<JointNames, 2>& joint_names);
 /// Returns a timed motion of both arms in the format of the file name's ending: .csv as above,

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/answer/job_result.hpp"
+#include "swivel/core/answer/answer.hpp"
 #include "swivel/core/problem/problem.hpp"
 #include "swivel/planner/verify/check.hpp"
 
@@ -33,7 +33,7 @@ struct JobCheckResult {
 /// Throws InvalidArgument for what validate(Problem) refuses and unless the robot was prepared for
 /// the job, InputError as plan_job() does, and Stopped.
 [[nodiscard]] JobCheckResult check_job(const PreparedRobot& robot, const Problem& job,
-                                       const std::vector<JobPart>& parts,
+                                       const std::vector<Part>& parts,
                                        const CheckOptions& options = {});
 
 /// Proves a timed job from its problem alone, or tells what is wrong with it: as check_job() says
@@ -52,7 +52,7 @@ struct JobCheckResult {
 /// part that says nothing of it, and is not looked at for transitions and for strokes that the job
 /// does not have. Throws InvalidArgument unless it has an item for each part and, where not empty,
 /// one for each row of a run.
-void check_process(const Problem& job, const std::vector<JobPart>& parts,
+void check_process(const Problem& job, const std::vector<Part>& parts,
                    const std::vector<std::vector<bool>>& process, JobCheckResult& result);
 
 /// Throws std::logic_error, with the first failure, if the result has not passed. For a program's

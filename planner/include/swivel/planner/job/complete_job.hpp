@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "swivel/core/answer/job_result.hpp"
+#include "swivel/core/answer/answer.hpp"
 #include "swivel/core/answer/stated.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/motion/job_motion.hpp"
@@ -16,9 +16,9 @@ class PreparedRobot;
 /// complete_rows() does of one path, and returns the parts. The roll of a six-joint arm, where the
 /// file has none, turns in transitions as the other joints move, from run to run. Throws as
 /// complete_rows() does, with the name of the stroke.
-[[nodiscard]] std::vector<JobPart> complete_parts(const PreparedRobot& robot, const Problem& job,
-                                                  std::vector<JobPart> parts, const Stated& stated,
-                                                  const Budget& budget = {});
+[[nodiscard]] std::vector<Part> complete_parts(const PreparedRobot& robot, const Problem& job,
+                                               std::vector<Part> parts, const Stated& stated,
+                                               const Budget& budget = {});
 
 /// Computes what the file of a job's motion does not state about its rows, as complete_motion()
 /// does of one path, for check_job_motion(), and returns the motion. `order` has its runs. The s of
@@ -33,9 +33,8 @@ class PreparedRobot;
 /// transitions the corners alone, between which the joints of all samples move straight (1e-6 rad).
 /// `order` has the runs of the motion, whose rows state everything. Throws as rows_at_layers()
 /// does, with the name of the stroke.
-[[nodiscard]] std::vector<JobPart> parts_of_motion(const PreparedRobot& robot, const Problem& job,
-                                                   const std::vector<StrokeRun>& order,
-                                                   const JobMotion& motion,
-                                                   const Budget& budget = {});
+[[nodiscard]] std::vector<Part> parts_of_motion(const PreparedRobot& robot, const Problem& job,
+                                                const std::vector<StrokeRun>& order,
+                                                const JobMotion& motion, const Budget& budget = {});
 
 }  // namespace swivel

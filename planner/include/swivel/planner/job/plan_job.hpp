@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "swivel/core/answer/job_result.hpp"
+#include "swivel/core/answer/answer.hpp"
 #include "swivel/core/problem/problem.hpp"
 #include "swivel/planner/plan/plan_options.hpp"
 
@@ -15,11 +15,11 @@ struct JobView;
 /// Throws InputError for a job that makes no sense, InvalidArgument for what validate(Problem)
 /// refuses or options that jobs do not have (an eager planner, hooks), std::logic_error if
 /// options.check finds an answer invalid.
-[[nodiscard]] JobResult plan_job(const Problem& job, const PlanOptions& options = {});
+[[nodiscard]] Answer plan_job(const Problem& job, const PlanOptions& options = {});
 /// Plans a job with a robot that was prepared before. Throws InvalidArgument also if it was not
 /// prepared for this job (PreparedRobot::require_prepared_for). `view`, if given, gets what was
 /// found out about the runs.
-[[nodiscard]] JobResult plan_job(const PreparedRobot& robot, const Problem& job,
-                                 const PlanOptions& options = {}, JobView* view = nullptr);
+[[nodiscard]] Answer plan_job(const PreparedRobot& robot, const Problem& job,
+                              const PlanOptions& options = {}, JobView* view = nullptr);
 
 }  // namespace swivel

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "swivel/core/answer/job_result.hpp"
+#include "swivel/core/answer/answer.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/motion/job_motion.hpp"
 #include "swivel/core/problem/problem.hpp"
@@ -36,12 +36,12 @@ void require_speeds(const Problem& job, const JobTimingOptions& options);
 /// speed limit, InvalidArgument as plan_job() does and for parts that are not those of the job, and
 /// Stopped.
 [[nodiscard]] JobTimingResult time_job(const PreparedRobot& robot, const Problem& job,
-                                       const std::vector<JobPart>& parts,
+                                       const std::vector<Part>& parts,
                                        const JobTimingOptions& options, const Budget& budget = {});
 
 /// The result of plan_job_motion(): a job and its motion in time.
 struct JobMotionPlan {
-  JobResult result;
+  Answer result;
   std::optional<JobTimingResult> timing;  ///< set if there is a job, unless `stopped`
   bool stopped = false;                   ///< there is a job, but time ran out before its motion
 };

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "swivel/core/answer/advice.hpp"
-#include "swivel/core/answer/job_result.hpp"
+#include "swivel/core/answer/answer.hpp"
 #include "swivel/core/problem/problem.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
@@ -37,7 +37,7 @@ namespace swivel {
 /// time-out covers all trials together (one second if unset). Changes that help come first. Empty
 /// unless the verdict is infeasible. Throws as plan_job() does.
 [[nodiscard]] AdviceOnJob advise_job(const PreparedRobot& robot, const Problem& job,
-                                     const JobResult& result, PlanOptions options = {});
+                                     const Answer& result, PlanOptions options = {});
 
 /// Returns changes that would help a workcell that has no plan, each planned alone, with both arms.
 /// Where one arm has no path by itself: what advise() finds for it. Where both have one: a free
@@ -53,7 +53,7 @@ namespace swivel {
 /// time-out covers all trials together (one second if unset). Changes that help come first. Empty
 /// unless the verdict is infeasible. Throws as plan_workcell() does. The number of threads changes
 /// the result only through the time.
-[[nodiscard]] AdviceOnWorkcell advise_workcell(const Problem& cell, const WorkcellResult& result,
+[[nodiscard]] AdviceOnWorkcell advise_workcell(const Problem& cell, const Answer& result,
                                                PlanOptions options = {});
 
 }  // namespace swivel

@@ -18,11 +18,7 @@ struct CampaignOptions {
   PlanOptions plan;
   /// Called with every answer before its row is delivered, from the planning threads, several at a
   /// time and in any order.
-  std::function<void(std::uint64_t episode, const PlanResult& result)> planned;
-  /// Called alike with the answers of a campaign of jobs.
-  std::function<void(std::uint64_t episode, const JobResult& result)> job_planned;
-  /// Called alike with the answers of a campaign of workcells.
-  std::function<void(std::uint64_t episode, const WorkcellResult& result)> workcell_planned;
+  std::function<void(std::uint64_t episode, const Answer& answer)> planned;
 };
 
 /// Plans the episodes of a shard and calls row_done with their rows in episode order, one call at a

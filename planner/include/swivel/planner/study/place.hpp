@@ -74,9 +74,6 @@ class PlacementPlanner {
 
  private:
   struct Impl;
-  struct ProblemPlacements;
-  struct JobPlacements;
-  struct WorkcellPlacements;
   std::unique_ptr<Impl> impl_;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "swivel/core/answer/answer.hpp"
 #include "swivel/core/answer/workcell_certificate.hpp"
-#include "swivel/core/answer/workcell_result.hpp"
 #include "swivel/core/problem/problem.hpp"
 #include "swivel/planner/plan/plan_options.hpp"
 #include "swivel/planner/workcell/prepared/prepared_workcell.hpp"
@@ -18,11 +18,10 @@ struct WorkcellView;
 /// plan() does of either arm and for a given motion that does not pass check_trajectory() by
 /// itself,
 /// std::logic_error if options.check finds an answer invalid.
-[[nodiscard]] WorkcellResult plan_workcell(const Problem& cell, const PlanOptions& options = {});
+[[nodiscard]] Answer plan_workcell(const Problem& cell, const PlanOptions& options = {});
 /// Plans a workcell that was prepared before. `view`: filled with what was found out, or null.
-[[nodiscard]] WorkcellResult plan_workcell(const PreparedWorkcell& prepared,
-                                           const PlanOptions& options = {},
-                                           WorkcellView* view = nullptr);
+[[nodiscard]] Answer plan_workcell(const PreparedWorkcell& prepared,
+                                   const PlanOptions& options = {}, WorkcellView* view = nullptr);
 
 /// Returns a certificate that a workcell has no plan, which verify_certificate() verifies. It comes
 /// from a search of its own, by regions of conflict alone: where plan_workcell() was decided by

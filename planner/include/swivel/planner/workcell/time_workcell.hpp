@@ -54,7 +54,7 @@ struct RefinedWorkcellMotion {
 struct WorkcellMotionPlan {
   /// The plan. If it is solved, trajectories, costs and measures describe the paths that are
   /// executed; lattice.cost of each arm and the bound stay those of the lattices' paths.
-  WorkcellResult result;
+  Answer result;
   std::optional<RefinedWorkcell> refinement;  ///< set if asked for and there is a plan
   /// Set if asked for, there is a plan and time was left; has a failure where it has no motion.
   std::optional<WorkcellTiming> timing;
