@@ -32,9 +32,8 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/core/lattice/lattice.hpp
   swivel/core/lattice/lattice_description.hpp
   swivel/core/lattice/problem_path.hpp
-  swivel/core/motion/timed_path.hpp
-  swivel/core/motion/job_motion.hpp
-  swivel/core/motion/workcell_motion.hpp
+  swivel/core/answer/timed_path.hpp
+  swivel/core/answer/motion.hpp
   swivel/core/study/campaign.hpp
   swivel/core/study/placement.hpp
   swivel/collision/proofs/verdict.hpp
@@ -47,13 +46,14 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/planner/measure/measure.hpp
   swivel/planner/job/check_job.hpp
   swivel/planner/job/complete_job.hpp
-  swivel/planner/job/job_view.hpp
+  swivel/planner/plan/problem_view.hpp
   swivel/planner/job/plan_job.hpp
   swivel/planner/job/time_job.hpp
   swivel/planner/plan/path_range.hpp
   swivel/planner/plan/plan_options.hpp
   swivel/planner/plan/plan_view.hpp
   swivel/planner/plan/planner.hpp
+  swivel/planner/problem/problem_planner.hpp
   swivel/planner/refine/cartesian_path.hpp
   swivel/planner/refine/motion.hpp
   swivel/planner/refine/refine.hpp
@@ -70,7 +70,6 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/planner/workcell/prepared/prepared_workcell.hpp
   swivel/planner/workcell/refine_workcell.hpp
   swivel/planner/workcell/time_workcell.hpp
-  swivel/planner/workcell/workcell_view.hpp
   swivel/io/files/files.hpp
   swivel/io/io.hpp
   swivel/io/jobs/job_trajectory.hpp

@@ -122,7 +122,7 @@ int check_job_file(const Problem& given, const std::string& trajectory,
   } else {
     const auto& timed = std::get<io::JobMotionFile>(file);
     const auto order = runs_of_motion(robot, job, timed.strokes, timed.motion);
-    const JobMotion motion = in_the_name_of(trajectory, [&] {
+    const ArmMotion motion = in_the_name_of(trajectory, [&] {
       return complete_job_motion(robot, job, order, timed.motion, timed.stated);
     });
     result = check_job_motion(robot, job, order, motion, {.speed = speed});

@@ -332,8 +332,7 @@ std::vector<PlacedEnd> ends_on_page(PlacementPlanner& planner,
   planner.plan_again(
       shown, [&](const PlacementCell& cell, const PlanResult& result, const PlanView& view) {
         if (result.status != PlanStatus::kInfeasible) return;
-        if (auto end = placed_end(cell, view, io::to_json(result, {})))
-          ends.push_back(std::move(*end));
+        if (auto end = placed_end(cell, view, io::to_json(result))) ends.push_back(std::move(*end));
       });
   return ends;
 }

@@ -13,27 +13,24 @@
 #include <utility>
 #include <vector>
 
-#include "commands/plan_job_command.hpp"
-#include "commands/workcell_command.hpp"
 #include "options/chosen_problem.hpp"
 #include "options/commands.hpp"
 #include "options/search_options.hpp"
 #include "output/advice_or_warning.hpp"
+#include "output/answer_output.hpp"
 #include "output/motion_output.hpp"
 #include "output/self_time_output.hpp"
-#include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/study/campaign.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/robots/urdf_shapes.hpp"
-#include "swivel/planner/certificate/infeasibility_certificate.hpp"
-#include "swivel/planner/plan/planner.hpp"
-#include "swivel/planner/refine/motion.hpp"
-#include "swivel/planner/study/advise.hpp"
-#include "swivel/planner/workcell/time_workcell.hpp"
+#include "swivel/planner/job/time_job.hpp"
+#include "swivel/planner/problem/problem_planner.hpp"
+#include "swivel/report/job_page.hpp"
 #include "swivel/report/lattice_map.hpp"
 #include "swivel/report/page.hpp"
+#include "swivel/report/workcell_page.hpp"
 #include "terminal/progress.hpp"
 #include "terminal/terminal.hpp"
 
@@ -56,281 +53,50 @@ struct PlanArguments {
   [[nodiscard]] bool draws() const { return map || !map_svg.empty() || !report.empty(); }
 };
 
+/// Returns what the answer of a problem is called: a path, a job of strokes, or a plan of two arms.
+const char* noun_of(const Problem& problem) {
+  return problem.arms.size() == 2 ? "plan" : is_path(problem) ? "path" : "job";
+}
+
 /// What is to be planned, as problem file and command line say it.
 struct PlanRequest {
   const PlanArguments& arguments;
-  PathProblem problem{};
+  Problem problem{};  ///< as the file and the choice of an episode or a placement have it
   /// The files that were read, which no output may replace.
   std::vector<io::InputFiles::File> inputs{};
-  std::optional<TimingOptions> timing{};  ///< set with --speed: the path is timed
+  MotionRequest asked{};
   PlanOptions options{};
   std::optional<double> advise_s{};  ///< s, time for all trials of --advise
   double load_ms = 0;                ///< time that loading took
 };
 
-/// What was found. Steps after plan_motion() add to it.
-struct PlanAnswer {
-  MotionPlan plan;
-  std::optional<std::vector<Advice>> advice{};      ///< with --advise, where there is no path
-  std::optional<InfeasibilityCertificate> proof{};  ///< with --certificate, where there is no path
-  std::string certificate{};                        ///< `proof` as JSON
-  std::optional<LatticeMap> map{};                  ///< unset if nothing is drawn
-  std::string page{};                               ///< HTML of --report
+/// What was found.
+struct PlanFindings {
+  Answer answer{};
+  std::optional<AnyAdvice> advice{};      ///< with --advise, where there is no answer
+  std::optional<AnyCertificate> proof{};  ///< with --certificate, where there is no answer
+  std::string certificate{};              ///< `proof` as JSON
+  std::optional<LatticeMap> map{};        ///< of one path; unset if nothing is drawn
+  std::optional<std::string> page{};      ///< HTML of --report
 
-  [[nodiscard]] bool solved() const { return plan.result.status == PlanStatus::kSolved; }
-  [[nodiscard]] bool infeasible() const { return plan.result.status == PlanStatus::kInfeasible; }
-  /// Returns true if there is a path, and with --speed its timed motion too.
-  [[nodiscard]] bool executable(const PlanRequest& request) const {
-    return solved() && (!request.timing || plan.motion->motion);
-  }
+  [[nodiscard]] bool infeasible() const { return answer.status == PlanStatus::kInfeasible; }
 };
-
-/// Returns the time in ms that the plan noted for a stage; 0 if it noted none.
-double ms(const PlanResult& result, const char* key) {
-  const auto found = result.time_ms.find(key);
-  return found == result.time_ms.end() ? 0.0 : found->second;
-}
-
-/// Returns the words that say how long the proof of the answer took; "" if it was not proved.
-std::string check_words(const PlanResult& result) {
-  char text[40] = "";
-  if (result.checked) std::snprintf(text, sizeof text, ", checked in %.1f ms", ms(result, "check"));
-  return text;
-}
-
-/// Prints the answer, times and work counts of a plan; warnings go to standard error.
-void print_summary(const PlanResult& result) {
-  say_text(answer_text(result));
-  const Counters& c = result.counters;
-  say("%s, %d thread%s: load %.1f ms, prepare %.1f ms, plan %.1f ms%s; %lld of %lld nodes and %lld "
-      "edges checked, %lld FCL calls\n",
-      result.planner.c_str(), result.threads, result.threads == 1 ? "" : "s", ms(result, "load"),
-      ms(result, "prepare"), ms(result, "plan"), check_words(result).c_str(),
-      static_cast<long long>(c.nodes_checked), static_cast<long long>(result.lattice.nodes),
-      static_cast<long long>(c.edges_checked), static_cast<long long>(c.fcl_calls));
-  for (const std::string& warning : result.warnings)
-    complain("swivel: warning: %s\n", warning.c_str());
-}
 
 double milliseconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
       .count();
 }
 
-/// A problem file as it was read.
-struct LoadedFile {
-  Problem problem{};
-  std::vector<io::InputFiles::File> inputs{};  ///< the files that were read
-  double load_ms = 0;                          ///< time that loading took
-};
-
-LoadedFile load_file(const PlanArguments& arguments) {
+/// Reads the problem file of the command line. Throws InputError.
+PlanRequest load_file(const PlanArguments& arguments) {
   const TraceSpan span("load");
   const auto start = std::chrono::steady_clock::now();
   const io::InputFiles noted;
-  LoadedFile file{.problem = io::load_problem(arguments.problem)};
-  file.inputs = noted.files();
-  file.load_ms = milliseconds_since(start);
-  return file;
-}
-
-/// Reads from the command line whether the path is timed, and completes the problem for what
-/// follows the search: with_motion_defaults() for a motion, clearance between layers for a
-/// refinement. Throws InputError if --out names a format that does not fit.
-void read_motion(PlanRequest& request) {
-  const PlanArguments& arguments = request.arguments;
-  request.timing = arguments.motion.asked_timing(request.problem.limits);
-  if (request.timing) {
-    require_motion_formats(arguments.out);
-    request.problem = with_motion_defaults(std::move(request.problem));
-  } else {
-    require_table_names(arguments.out, "a path without times",
-                        "--speed, with which motions are written in other formats");
-    if (arguments.refine) keep_clearance_between_layers(request.problem.limits);
-  }
-}
-
-/// Gives a request the times that the command line allows, and what is to be found out besides the
-/// answer. Throws InputError.
-template <class Request>
-void take_limits(const PlanArguments& arguments, Request& request) {
-  if (arguments.timeout) request.options.timeout_s = positive(*arguments.timeout, "--timeout");
-  if (arguments.advise) request.advise_s = positive(*arguments.advise, "--advise");
-  if (!arguments.quiet || !arguments.json.empty() || !arguments.report.empty())
-    request.options.evidence = Evidence::all();
-}
-
-/// Returns the request that a problem of one path and the command line make. Throws InputError.
-PlanRequest request_of(const PlanArguments& arguments, LoadedFile file) {
-  PlanRequest request{.arguments = arguments,
-                      .problem = problem_of_run(file.problem, {0, false}),
-                      .inputs = std::move(file.inputs),
-                      .options = arguments.search.plan_options(),
-                      .load_ms = file.load_ms};
-  read_motion(request);
-  take_limits(arguments, request);
+  PlanRequest request{.arguments = arguments, .problem = io::load_problem(arguments.problem)};
+  request.inputs = noted.files();
+  request.options = arguments.search.plan_options();
+  request.load_ms = milliseconds_since(start);
   return request;
-}
-
-/// Throws InputError if options contradict each other, or need what this build lacks.
-void require_options_agree(const PlanRequest& request) {
-  const PlanArguments& arguments = request.arguments;
-  if (!arguments.report.empty()) require_pages();
-  if (arguments.full_map && !arguments.draws())
-    throw InputError("--full-map: nothing is drawn: allowed with --map, --map-svg or --report");
-  if (arguments.map && arguments.json == "-")
-    throw InputError("--map: standard output is taken by --json -: allowed is one of the two");
-  if (!arguments.certificate.empty() && (arguments.refine || request.timing))
-    throw InputError(
-        "--certificate: is of the problem as its file has it: allowed without --refine and "
-        "--speed, which ask for more");
-}
-
-/// Adds the files of the command line to `outputs`. Throws InputError if one cannot be written.
-void add_outputs(const PlanArguments& arguments, io::OutputFiles& outputs) {
-  for (const std::string& file : arguments.out) outputs.add("--out", file);
-  outputs.add("--report", arguments.report);
-  outputs.add("--map-svg", arguments.map_svg);
-  outputs.add("--certificate", arguments.certificate);
-  outputs.add("--trace", arguments.trace);
-  outputs.add("--json", arguments.json);
-}
-
-/// Where there is no path, seeks changes that would help, within --advise and what is left of
-/// --timeout, that of `budget`.
-void find_advice(const Planner& planner, const PlanRequest& request, const Budget& budget,
-                 PlanAnswer& answer) {
-  if (!request.advise_s || !answer.infeasible()) return;
-  PlanOptions trials = request.options;
-  trials.timeout_s = std::min(budget.seconds_left().value_or(*request.advise_s), *request.advise_s);
-  answer.advice = advice_or_warning(answer.plan.result.warnings,
-                                    [&] { return advise(planner, answer.plan.result, trials); });
-}
-
-/// Where there is no path, proves it with a certificate. Adds a warning to the result if the budget
-/// ends first.
-void find_certificate(const Planner& planner, const Budget& budget, PlanAnswer& answer) {
-  if (!answer.infeasible()) return;
-  PlanResult& result = answer.plan.result;
-  const auto start = std::chrono::steady_clock::now();
-  try {
-    answer.proof = prove_infeasible(planner.view(), budget);
-    answer.certificate = io::to_json(*answer.proof);
-  } catch (const Stopped&) {
-    result.warnings.push_back("stopped before the certificate was found: there is none");
-  }
-  result.time_ms["certificate"] = milliseconds_since(start);
-}
-
-/// Returns what followed the search, for the result file. It points into `answer`.
-io::PlanExtras extras_of(const PlanRequest& request, const PlanAnswer& answer) {
-  const MotionPlan& plan = answer.plan;
-  return {plan.refinement ? &*plan.refinement : nullptr, plan.motion ? &*plan.motion : nullptr,
-          request.timing.value_or(TimingOptions{}),      answer.advice ? &*answer.advice : nullptr,
-          answer.proof ? &*answer.proof : nullptr,       answer.certificate.size()};
-}
-
-/// Returns the page of --report.
-std::string page_of(const PlanRequest& request, const PlanAnswer& answer, const PlanView& view,
-                    const io::PlanExtras& extras, const Budget& budget) {
-  const MotionPlan& plan = answer.plan;
-  PageMotion motion;
-  if (plan.refinement && plan.refinement->refined) motion.refined = &plan.result.trajectory;
-  if (plan.motion && plan.motion->motion) motion.motion = &*plan.motion->motion;
-  const io::VisualRobot visual = io::load_visuals(*view.problem.model);
-  return to_page(view, *answer.map, io::to_json(plan.result, extras), motion, budget,
-                 {request.arguments.episode.words(),
-                  answer_text(plan.result) + (answer.advice ? advice_text(*answer.advice) : ""),
-                  visual.model.get(), visual.left_out});
-}
-
-/// Makes the lattice map and the page, if they are asked for and the plan has a verdict. Adds a
-/// warning to the result if the budget ends first; there is then neither map nor page.
-void draw(const Planner& planner, const PlanRequest& request, const io::PlanExtras& extras,
-          const Budget& budget, PlanAnswer& answer) {
-  const PlanArguments& arguments = request.arguments;
-  PlanResult& result = answer.plan.result;
-  if (!arguments.draws() || result.status == PlanStatus::kTimeout ||
-      result.status == PlanStatus::kCancelled)
-    return;
-  try {
-    const PlanView view = planner.view();
-    answer.map = make_map(view, arguments.full_map, budget);
-    if (!arguments.report.empty()) answer.page = page_of(request, answer, view, extras, budget);
-  } catch (const Stopped&) {
-    answer.map.reset();
-    result.warnings.push_back("stopped before the map was drawn: there is none, and no report");
-  }
-}
-
-/// Gives --out its text: with --speed the timed motion, else the path. Marks an earlier file for
-/// removal if there is none.
-void write_path(const PlanRequest& request, const PlanAnswer& answer, io::OutputFiles& outputs) {
-  const MotionPlan& plan = answer.plan;
-  if (!answer.executable(request))
-    outputs.remove("--out");
-  else if (!request.timing)
-    outputs.write("--out", io::to_csv(plan.result));
-  else
-    outputs.write_each("--out", [&](const std::filesystem::path& file) {
-      return io::motion_text(*plan.motion->motion, plan.result.joint_names,
-                             request.problem.base_link, file);
-    });
-}
-
-/// Gives all outputs their texts, or marks earlier files for removal. Moves certificate and page
-/// out of `answer`.
-void write_answer(const PlanRequest& request, const io::PlanExtras& extras,
-                  const std::optional<Timeline>& timeline, PlanAnswer& answer,
-                  io::OutputFiles& outputs) {
-  write_path(request, answer, outputs);
-  if (answer.proof)
-    outputs.write("--certificate", std::move(answer.certificate));
-  else
-    outputs.remove("--certificate");
-  if (answer.map) {
-    outputs.write("--report", std::move(answer.page));
-    if (outputs.wants("--map-svg")) outputs.write("--map-svg", to_svg(*answer.map));
-  } else {
-    outputs.remove("--report");
-    outputs.remove("--map-svg");
-  }
-  if (timeline) outputs.write("--trace", io::to_trace_json(*timeline) + "\n");
-  if (outputs.wants("--json"))
-    outputs.write("--json", io::to_json(answer.plan.result, extras) + "\n");
-}
-
-/// Returns the reason for which earlier files are removed.
-const char* reason_of_removal(const PlanRequest& request, const PlanAnswer& answer,
-                              const io::OutputFiles& outputs) {
-  if (answer.infeasible()) return "there is no path now";
-  if (answer.executable(request) && outputs.wants("--certificate")) return "there is a path now";
-  if (answer.solved() && !answer.plan.stopped) return "there is no motion now";
-  return "the search was stopped";
-}
-
-/// Prints summary, times of the stages and map, as far as they are asked for.
-void print_answer(const PlanRequest& request, const PlanAnswer& answer,
-                  const io::PlanExtras& extras, const std::optional<Timeline>& timeline,
-                  const io::OutputFiles& outputs) {
-  const PlanArguments& arguments = request.arguments;
-  const PlanResult& result = answer.plan.result;
-  if (!arguments.quiet && !outputs.takes_standard_output()) {
-    print_summary(result);
-    print_plan_extras(extras, result.joint_names);
-    if (answer.proof) say_text(certificate_text(*answer.proof, extras.certificate_bytes));
-    if (answer.advice) say_text(advice_text(*answer.advice));
-  }
-  if (!arguments.quiet && timeline) print_self_times(*timeline);
-  if (answer.map && arguments.map)
-    std::fputs(to_text(*answer.map, terminal_columns(), coloured()).c_str(), stdout);
-}
-
-ExitCode exit_code_of(const PlanRequest& request, const PlanAnswer& answer) {
-  if (answer.infeasible()) return kNo;
-  if (!answer.solved()) return kStopped;
-  if (answer.executable(request)) return kOk;
-  return answer.plan.stopped ? kStopped : kNo;
 }
 
 /// Throws InputError for options that are of problems with one path alone.
@@ -347,103 +113,247 @@ void require_options_of(const PlanArguments& arguments, const Problem& problem) 
   require_planner_of(problem, arguments.search);
 }
 
-/// Plans a job and writes and prints the answer, as plan_problem() does for one path.
-int plan_job_of(const PlanArguments& arguments, LoadedFile file,
-                std::optional<io::OutputFiles>& outputs) {
-  if (!arguments.report.empty()) require_pages();
-  JobRequest request{.job = std::move(file.problem),
-                     .options = arguments.search.plan_options(),
-                     .which = arguments.episode.words(),
-                     .report = !arguments.report.empty(),
-                     .quiet = arguments.quiet,
-                     .load_ms = file.load_ms};
-  if (arguments.motion.ask_for_job_motion()) {
+/// Reads from the command line whether the answer is refined and timed. Throws InputError if --out
+/// names a format that does not fit, or if a stroke has no speed.
+void read_motion(PlanRequest& request) {
+  const PlanArguments& arguments = request.arguments;
+  const Problem& problem = request.problem;
+  const bool strokes = problem.arms.size() == 1 && !is_path(problem);
+  request.asked.refine = arguments.refine;
+  if (!strokes)
+    request.asked.timing =
+        arguments.motion.asked_timing(is_path(problem) ? problem.arm().path().limits : Limits());
+  if (request.asked.timing || (strokes && arguments.motion.ask_for_job_motion())) {
     require_motion_formats(arguments.out);
-    request.timing = arguments.motion.job_timing();
-    require_speeds(request.job, *request.timing);
   } else {
-    require_table_names(arguments.out, "a job without times",
-                        "--speed or --rate, with which motions are written in other formats");
+    require_table_names(arguments.out,
+                        strokes            ? "a job without times"
+                        : is_path(problem) ? "a path without times"
+                                           : "the trajectory of a workcell without times",
+                        std::string("--speed") + (strokes ? " or --rate" : "") +
+                            ", with which motions are written in other formats");
+    return;
   }
-  if (!arguments.certificate.empty() && request.job.arm().lift)
+  if (!strokes) return;
+  const JobTimingOptions timing = arguments.motion.job_timing();
+  require_speeds(problem, timing);
+  request.asked.timing = {
+      .speed = timing.speed.value_or(0), .turn_speed = timing.turn_speed, .rate = timing.rate};
+}
+
+/// Throws InputError if options contradict each other, or need what this build lacks.
+void require_options_agree(const PlanRequest& request) {
+  const PlanArguments& arguments = request.arguments;
+  const Problem& problem = request.problem;
+  if (!arguments.report.empty()) require_pages();
+  if (arguments.full_map && !arguments.draws())
+    throw InputError("--full-map: nothing is drawn: allowed with --map, --map-svg or --report");
+  if (arguments.map && arguments.json == "-")
+    throw InputError("--map: standard output is taken by --json -: allowed is one of the two");
+  if (arguments.certificate.empty()) return;
+  if (problem.arms.size() == 1 && problem.arm().lift)
     throw InputError(
         "--certificate: proves that one run of a stroke has no path, and the job allows several "
         "by `lift`: allowed without lift-offs");
-  if (!arguments.certificate.empty() && request.timing)
-    throw InputError(
-        "--certificate: is of the job as its file has it: allowed without --speed and --rate, "
-        "which ask for more");
-  take_limits(arguments, request);
-  outputs.emplace(std::move(file.inputs));
-  add_outputs(arguments, *outputs);
-  return plan_job_file(std::move(request), *outputs);
+  const bool two_arms = problem.arms.size() == 2, path = is_path(problem);
+  if (request.asked.refine || request.asked.timing)
+    throw InputError(std::string("--certificate: is of the ") +
+                     (two_arms ? "workcell"
+                      : path   ? "problem"
+                               : "job") +
+                     " as its file has it: allowed without " +
+                     (two_arms || path ? "--refine and --speed" : "--speed and --rate") +
+                     ", which ask for more");
 }
 
-/// Plans a workcell and writes and prints the answer.
-int plan_workcell_of(const PlanArguments& arguments, LoadedFile file,
-                     std::optional<io::OutputFiles>& outputs) {
-  if (!arguments.report.empty()) require_pages();
-  if (!arguments.certificate.empty() && (arguments.refine || arguments.motion.speed))
-    throw InputError(
-        "--certificate: is of the workcell as its file has it: allowed without --refine and "
-        "--speed, which ask for more");
-  WorkcellRequest request{.cell = std::move(file.problem),
-                          .options = arguments.search.plan_options(),
-                          .refine = arguments.refine,
-                          .which = arguments.episode.words(),
-                          .report = !arguments.report.empty(),
-                          .quiet = arguments.quiet,
-                          .load_ms = file.load_ms};
-  request.timing = arguments.motion.asked_timing({});
-  if (request.timing) {
-    require_motion_formats(arguments.out);
-    request.cell = with_motion_defaults(std::move(request.cell));
-  } else {
-    require_table_names(arguments.out, "the trajectory of a workcell without times",
-                        "--speed, with which motions are written in other formats");
-    for (ArmTask& arm : request.cell.arms)
-      if (arguments.refine) keep_clearance_between_layers(arm.path().limits);
+/// Gives a request the times that the command line allows, and what is to be found out besides the
+/// answer. Throws InputError.
+void take_limits(PlanRequest& request) {
+  const PlanArguments& arguments = request.arguments;
+  if (arguments.timeout) request.options.timeout_s = positive(*arguments.timeout, "--timeout");
+  if (arguments.advise) request.advise_s = positive(*arguments.advise, "--advise");
+  if (!arguments.quiet || !arguments.json.empty() || !arguments.report.empty())
+    request.options.evidence = Evidence::all();
+}
+
+/// Returns the outputs of the command line. Throws InputError if one cannot be written.
+void add_outputs(const PlanArguments& arguments, io::OutputFiles& outputs) {
+  for (const std::string& file : arguments.out) outputs.add("--out", file);
+  outputs.add("--report", arguments.report);
+  outputs.add("--map-svg", arguments.map_svg);
+  outputs.add("--certificate", arguments.certificate);
+  outputs.add("--trace", arguments.trace);
+  outputs.add("--json", arguments.json);
+}
+
+/// Where there is no answer, seeks changes that would help, within --advise and what is left of
+/// --timeout, that of `budget`.
+void find_advice(const ProblemPlanner& planner, const PlanRequest& request, const Budget& budget,
+                 PlanFindings& found) {
+  if (!request.advise_s || !found.infeasible()) return;
+  PlanOptions trials = request.options;
+  trials.timeout_s = std::min(budget.seconds_left().value_or(*request.advise_s), *request.advise_s);
+  found.advice = advice_or_warning(found.answer.warnings,
+                                   [&] { return planner.advise(found.answer, trials); });
+}
+
+/// Where there is no answer, proves it with a certificate. Adds a warning if there is none, or if
+/// the budget ends first.
+void find_certificate(const ProblemPlanner& planner, const Budget& budget, PlanFindings& found) {
+  if (!found.infeasible()) return;
+  const auto start = std::chrono::steady_clock::now();
+  try {
+    found.proof = planner.prove_infeasible(found.answer, budget);
+    if (found.proof)
+      found.certificate =
+          std::visit([](const auto& proof) { return io::to_json(proof); }, *found.proof);
+  } catch (const Stopped&) {
+    found.answer.warnings.push_back("stopped before the certificate was found: there is none");
   }
-  take_limits(arguments, request);
-  outputs.emplace(std::move(file.inputs));
-  add_outputs(arguments, *outputs);
-  return plan_workcell_file(std::move(request), *outputs);
+  found.answer.time_ms["certificate"] = milliseconds_since(start);
 }
 
-/// Plans the problem, job or workcell of the command line and writes and prints the answer. Returns
-/// the exit code. Sets `outputs` as soon as it is known that they may be written. Throws
-/// InputError.
+/// Returns what followed the search, for the result file. It points into `found`.
+io::AnswerExtras extras_of(const PlanFindings& found) {
+  io::AnswerExtras extras{.advice = found.advice ? &*found.advice : nullptr};
+  if (found.proof) {
+    extras.certificate = std::get_if<InfeasibilityCertificate>(&*found.proof);
+    extras.certificate_bytes = found.certificate.size();
+  }
+  return extras;
+}
+
+/// Returns the page of --report.
+std::string page_of(const ProblemPlanner& planner, const PlanRequest& request,
+                    const PlanFindings& found, const Budget& budget) {
+  const Answer& answer = found.answer;
+  const ProblemView& view = planner.view();
+  const Problem problem = executed_problem(planner.problem(), answer);
+  const std::string json = io::to_json(answer, problem, extras_of(found));
+  const io::VisualRobot visual = io::load_visuals(*problem.arm().model);
+  const PageWords words{request.arguments.episode.words(),
+                        whole_text(answer, problem, found.advice), visual.model.get(),
+                        visual.left_out};
+  const Motion* const motion = answer.timed();
+  if (problem.arms.size() == 2)
+    return to_workcell_page({planner.two_arms(), problem, answer, view, motion}, json, budget,
+                            words);
+  const ArmMotion* const of_arm = motion != nullptr ? &motion->arms.front() : nullptr;
+  if (!is_path(problem))
+    return to_job_page({planner.robot(), problem, answer, view, of_arm}, json, budget, words);
+  PageMotion shown;
+  if (answer.refined) shown.refined = &answer.arm().rows();
+  shown.motion = of_arm;
+  return to_page(view.runs.front(), *found.map, json, shown, budget, words);
+}
+
+/// Makes the lattice map and the page, if they are asked for and the plan has a verdict. Adds a
+/// warning if the budget ends first; there is then neither map nor page.
+void draw(const ProblemPlanner& planner, const PlanRequest& request, const Budget& budget,
+          PlanFindings& found) {
+  const PlanArguments& arguments = request.arguments;
+  const Problem& problem = request.problem;
+  const bool decided = found.answer.has_rows() || found.infeasible();
+  if (!arguments.draws() || !decided) return;
+  if (problem.arms.size() == 2 && planner.view().runs.empty()) return;
+  try {
+    if (is_path(problem))
+      found.map = make_map(planner.view().runs.front(), arguments.full_map, budget);
+    if (!arguments.report.empty()) found.page = page_of(planner, request, found, budget);
+  } catch (const Stopped&) {
+    found.map.reset();
+    found.answer.warnings.push_back(
+        is_path(problem) ? "stopped before the map was drawn: there is none, and no report"
+                         : "stopped before the page was made: there is no report");
+  }
+}
+
+/// Gives --out its text: the motion where one is asked for, else the rows. Marks an earlier file
+/// for removal if there is none.
+void write_rows(const Answer& answer, const Problem& executed, io::OutputFiles& outputs) {
+  if (!answer.is_whole())
+    outputs.remove("--out");
+  else
+    outputs.write_each("--out", [&](const std::filesystem::path& file) {
+      return answer.timing ? io::motion_text(answer, executed, file) : io::to_csv(answer, executed);
+    });
+}
+
+/// Gives all outputs their texts, or marks earlier files for removal. Moves certificate and page
+/// out of `found`.
+void write_answer(const Problem& executed, const std::optional<Timeline>& timeline,
+                  PlanFindings& found, io::OutputFiles& outputs) {
+  write_rows(found.answer, executed, outputs);
+  if (outputs.wants("--json"))
+    outputs.write("--json", io::to_json(found.answer, executed, extras_of(found)) + "\n");
+  const auto write_or_remove = [&](const char* option, bool made, auto&& text) {
+    if (made && outputs.wants(option))
+      outputs.write(option, text());
+    else
+      outputs.remove(option);
+  };
+  write_or_remove("--certificate", found.proof.has_value(),
+                  [&] { return std::move(found.certificate); });
+  write_or_remove("--report", found.page.has_value(), [&] { return *std::move(found.page); });
+  write_or_remove("--map-svg", found.map.has_value(), [&] { return to_svg(*found.map); });
+  if (timeline) outputs.write("--trace", io::to_trace_json(*timeline) + "\n");
+}
+
+/// Returns the reason for which earlier files are removed.
+std::string reason_of_removal(const Problem& problem, const Answer& answer,
+                              const io::OutputFiles& outputs) {
+  const std::string noun = noun_of(problem);
+  if (answer.status == PlanStatus::kInfeasible) return "there is no " + noun + " now";
+  if (answer.is_whole() && outputs.wants("--certificate")) return "there is a " + noun + " now";
+  if (answer.has_rows() && !answer.is_whole() && !answer.stopped) return "there is no motion now";
+  return "the search was stopped";
+}
+
+ExitCode exit_code_of(const Answer& answer) {
+  if (answer.status == PlanStatus::kInfeasible) return kNo;
+  if (answer.is_whole()) return kOk;
+  return answer.has_rows() && !answer.stopped ? kNo : kStopped;
+}
+
+/// Plans the problem of the command line and writes and prints the answer. Returns the exit code.
+/// Sets `outputs` as soon as it is known that they may be written. Throws InputError.
 int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>& outputs) {
   std::optional<Timeline> timeline;
   if (!arguments.trace.empty()) timeline.emplace();
-  LoadedFile file = load_file(arguments);
-  require_options_of(arguments, file.problem);
-  file.problem = chosen_problem(file.problem, arguments.search, arguments.episode);
-  if (file.problem.arms.size() == 2) return plan_workcell_of(arguments, std::move(file), outputs);
-  if (!is_path(file.problem)) return plan_job_of(arguments, std::move(file), outputs);
-  PlanRequest request = request_of(arguments, std::move(file));
+  PlanRequest request = load_file(arguments);
+  require_options_of(arguments, request.problem);
+  request.problem = chosen_problem(request.problem, arguments.search, arguments.episode);
+  read_motion(request);
+  require_options_agree(request);
+  take_limits(request);
+  outputs.emplace(std::move(request.inputs));
+  add_outputs(arguments, *outputs);
 
   catch_interrupts();
   ProgressLine progress(!arguments.quiet && isatty(STDERR_FILENO));
   request.options.progress = [&](const Progress& now) { progress.show(now); };
-  require_options_agree(request);
-  outputs.emplace(std::move(request.inputs));
-  add_outputs(arguments, *outputs);
-
-  const Budget budget = request.options.budget();  // of proof and map; plan_motion() has its own
-  Planner planner(request.problem);
-  PlanAnswer answer{plan_motion(planner, request.options, arguments.refine, request.timing)};
-  answer.plan.result.time_ms["load"] = request.load_ms;
-  find_advice(planner, request, budget, answer);
-  if (outputs->wants("--certificate")) find_certificate(planner, budget, answer);
-  const io::PlanExtras extras = extras_of(request, answer);
-  draw(planner, request, extras, budget, answer);
+  const Budget budget = request.options.budget();  // of what follows the plan, which has its own
+  ProblemPlanner planner(request.problem, request.asked);
+  const bool proves = outputs->wants("--certificate");
+  PlanFindings found{.answer = planner.plan(request.options, proves || arguments.draws())};
+  found.answer.time_ms["load"] = request.load_ms;
+  find_advice(planner, request, budget, found);
+  if (proves) find_certificate(planner, budget, found);
+  draw(planner, request, budget, found);
   progress.clear();
 
-  write_answer(request, extras, timeline, answer, *outputs);
-  deliver(*outputs, reason_of_removal(request, answer, *outputs),
-          [&] { print_answer(request, answer, extras, timeline, *outputs); });
-  return exit_code_of(request, answer);
+  const Answer& answer = found.answer;
+  const Problem executed = executed_problem(request.problem, answer);
+  const std::size_t bytes = found.certificate.size();
+  write_answer(executed, timeline, found, *outputs);
+  deliver(*outputs, reason_of_removal(executed, answer, *outputs), [&] {
+    if (!arguments.quiet && !outputs->takes_standard_output())
+      print_answer(answer, executed, found.advice, found.proof, bytes);
+    if (!arguments.quiet && timeline) print_self_times(*timeline);
+    if (found.map && arguments.map)
+      std::fputs(to_text(*found.map, terminal_columns(), coloured()).c_str(), stdout);
+  });
+  return exit_code_of(answer);
 }
 
 /// Calls plan_problem(). If it fails after the outputs are known, and not through bad input or lack

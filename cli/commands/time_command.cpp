@@ -37,9 +37,7 @@ std::vector<TrajectoryRow> refined(const PreparedRobot& robot, const PathProblem
   const PathProblem smoothed = with_motion_defaults(problem);
   const Refined result = refine(robot, smoothed, rows_on_path(robot, smoothed, rows), {},
                                 Budget(std::nullopt, &interrupted));
-  if (!quiet)
-    print_plan_extras({.refinement = &result, .motion = nullptr, .timing = {}},
-                      robot.arm().chain.joint_names);
+  if (!quiet) print_refined(result);
   return result.rows;
 }
 

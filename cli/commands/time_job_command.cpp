@@ -7,6 +7,7 @@
 #include "commands/job_rows.hpp"
 #include "options/commands.hpp"
 #include "options/search_options.hpp"
+#include "output/motion_output.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/motion/job_text.hpp"
 #include "swivel/io/io.hpp"
@@ -32,7 +33,7 @@ std::vector<Part> proved_parts(const PreparedRobot& robot, const io::ExecutedJob
   };
   if (const auto* file = std::get_if<io::JobMotionFile>(&read.rows)) {
     const auto order = runs_of_motion(robot, job, file->strokes, file->motion);
-    const JobMotion motion =
+    const ArmMotion motion =
         complete_job_motion(robot, job, order, file->motion, file->stated, budget);
     std::vector<Part> parts = parts_of_motion(robot, job, order, motion, budget);
     // The rows are on the paths as motions follow them.
@@ -60,7 +61,7 @@ std::vector<StrokeRun> runs_among(const std::vector<Part>& parts) {
 /// A motion, or why there is none.
 struct Timed {
   std::vector<Part> parts;
-  JobTimingResult timing;
+  MotionTiming timing;
   std::string fault = {};  ///< what the check of the motion found; empty: it is proved
 };
 
@@ -73,7 +74,7 @@ Timed timed(const PreparedRobot& robot, const JobTimeRequest& request,
   if (!made.timing.motion || !request.check) return made;
   // Motions keep more clearance between rows than trajectories do: transitions may lack it.
   const JobCheckResult check =
-      check_job_motion(robot, job, runs_among(made.parts), *made.timing.motion,
+      check_job_motion(robot, job, runs_among(made.parts), made.timing.motion->arms.front(),
                        {.margins = false, .budget = budget, .speed = request.timing.speed});
   if (!check.passed) made.fault = check.failures.front();
   return made;
@@ -102,16 +103,15 @@ int time_job_file(const JobTimeRequest& request, std::optional<io::InputFiles>& 
     outputs.remove("--out");
   else
     outputs.write_each("--out", [&](const std::filesystem::path& file) {
-      return io::job_motion_text(*made->timing.motion, job, names, job.arm().base_link, file);
+      return io::job_motion_text(made->timing.motion->arms.front(), job, names, job.arm().base_link,
+                                 file);
     });
   deliver(outputs, made ? "there is no motion now" : "the work was stopped", [&] {
     if (!made) return say("stopped\n");
     if (!made->fault.empty()) return say("not executable: %s\n", made->fault.c_str());
     if (executable && (request.quiet || outputs.takes_standard_output())) return;
     say_text(job_motion_text(made->timing, made->parts, job));
-    if (!executable) return;
-    for (const std::string& warning : made->timing.motion->warnings)
-      complain("swivel: warning: %s\n", warning.c_str());
+    if (executable) warn_of(*made->timing.motion);
   });
   return !made ? kStopped : executable ? kOk : kNo;
 }

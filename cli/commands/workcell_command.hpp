@@ -4,30 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/motion/timed_path.hpp"
+#include "swivel/core/answer/timed_path.hpp"
 #include "swivel/core/problem/problem.hpp"
 #include "swivel/io/files/files.hpp"
 #include "swivel/planner/plan/plan_options.hpp"
 
 namespace swivel::cli {
-
-/// What `swivel plan` is asked to do with a workcell.
-struct WorkcellRequest {
-  Problem cell{};
-  PlanOptions options{};
-  std::optional<TimingOptions> timing{};  ///< set with --speed: the plan is timed
-  std::optional<double> advise_s{};       ///< s, time for all trials of --advise
-  bool refine = false;                    ///< --refine
-  std::string which{};                    ///< episode in words, for the page; "" if none is chosen
-  bool report = false;                    ///< whether the page of --report is made
-  bool quiet = false;
-  double load_ms = 0;  ///< time that loading took
-};
-
-/// Plans a workcell, times the plan if asked for, writes its trajectories or its motion, its page
-/// and its result, and prints the answer. `outputs` has --out, --report, --json and
-/// --certificate. Returns the exit code. Throws InputError.
-int plan_workcell_file(WorkcellRequest request, io::OutputFiles& outputs);
 
 /// What `swivel time` is asked to do with a workcell.
 struct WorkcellTimeRequest {

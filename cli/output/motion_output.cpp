@@ -71,21 +71,24 @@ void require_table_names(const std::vector<std::string>& files, const std::strin
   for (const std::string& file : files) require_table_name("--out", file, what, instead);
 }
 
-void print_plan_extras(const io::PlanExtras& extras, const io::JointNames& joint_names) {
-  if (const Refined* refined = extras.refinement) {
-    if (refined->refined)
-      say("refined: cost %.6g before, %.6g now; joints bend by at most %.3g rad/m^2 before, %.3g "
-          "now\n",
-          refined->cost_before, refined->cost, refined->bend_before, refined->bend);
-    else
-      say("not refined: %s\n", refined->reason.c_str());
-  }
-  if (extras.motion == nullptr) return;
-  if (const auto& failure = extras.motion->failure) {
+void print_refined(const Refined& refined) {
+  if (refined.refined)
+    say("refined: cost %.6g before, %.6g now; joints bend by at most %.3g rad/m^2 before, %.3g "
+        "now\n",
+        refined.cost_before, refined.cost, refined.bend_before, refined.bend);
+  else
+    say("not refined: %s\n", refined.reason.c_str());
+}
+
+void print_refined_and_timed(const Answer& answer) {
+  if (answer.refinement) print_refined(answer.refinement->arms.front());
+  if (!answer.motion) return;
+  if (const auto& failure = answer.motion->failure) {
     say("not executable: s = %.4f m: %s\n", failure->s, failure->reason.c_str());
     return;
   }
-  const TimedPath& motion = *extras.motion->motion;
+  const io::JointNames& joint_names = answer.arm().joint_names;
+  const TimedPath& motion = answer.timed()->arms.front();
   const TimedPath::Peak* most = &motion.peaks[0][0];
   JointRate rate = JointRate::kSpeed;
   for (const JointRate one : {JointRate::kSpeed, JointRate::kAcceleration, JointRate::kJerk})
@@ -103,8 +106,15 @@ void print_plan_extras(const io::PlanExtras& extras, const io::JointNames& joint
   if (!motion.stops.empty())
     say("; %zu stop%s", motion.stops.size(), motion.stops.size() == 1 ? "" : "s");
   say("\n");
+}
+
+void warn_of(const Motion& motion) {
   for (const std::string& warning : motion.warnings)
     complain("swivel: warning: %s\n", warning.c_str());
+  for (const ArmMotion& arm : motion.arms)
+    for (const std::string& warning : arm.warnings)
+      complain("swivel: warning: %s%s\n",
+               arm.name.empty() ? "" : ("arm '" + arm.name + "': ").c_str(), warning.c_str());
 }
 
 void print_motion(const TimedPath& motion, const io::JointNames& joint_names) {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "swivel/core/answer/answer.hpp"
 #include "swivel/core/timing/time_path.hpp"
 #include "swivel/io/motions/motion.hpp"
-#include "swivel/io/results/result.hpp"
 #include "swivel/planner/job/time_job.hpp"
 
 namespace swivel::cli {
@@ -44,9 +44,15 @@ void require_motion_formats(const std::vector<std::string>& files);
 void require_table_names(const std::vector<std::string>& files, const std::string& what,
                          const std::string& instead);
 
-/// Prints what became of a plan's path, one line for each extra, on standard output, and warnings
-/// on standard error.
-void print_plan_extras(const io::PlanExtras& extras, const io::JointNames& joint_names);
+/// Prints what refining a path brought on standard output.
+void print_refined(const Refined& refined);
+
+/// Prints what became of the answer of one path: its refinement and its motion, a line for each, on
+/// standard output.
+void print_refined_and_timed(const Answer& answer);
+
+/// Prints the warnings of a motion on standard error.
+void warn_of(const Motion& motion);
 
 /// Prints the main figures of a motion on standard output, and warnings on standard error.
 void print_motion(const TimedPath& motion, const io::JointNames& joint_names);

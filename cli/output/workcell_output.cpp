@@ -35,7 +35,7 @@ std::string peaks_text(const TimedPath& motion, const io::JointNames& names) {
 
 }  // namespace
 
-std::string refined_workcell_text(const RefinedWorkcell& refined,
+std::string refined_workcell_text(const RefinedArms& refined,
                                   const std::array<std::string, 2>& names) {
   std::string text =
       formatted("refined: cost %.6g before, %.6g now, in ", refined.cost_before, refined.cost) +
@@ -52,13 +52,13 @@ std::string refined_workcell_text(const RefinedWorkcell& refined,
   return text;
 }
 
-std::string workcell_motion_text(const WorkcellTiming& timing,
+std::string workcell_motion_text(const MotionTiming& timing,
                                  const std::array<io::JointNames, 2>& joint_names,
                                  const std::array<std::string, 2>& names) {
   if (const auto& failure = timing.failure)
     return formatted("not executable: s = %.4f m of '", failure->s) + names[timing.failed_arm] +
            "': " + failure->reason + "\n";
-  const WorkcellMotion& motion = *timing.motion;
+  const Motion& motion = *timing.motion;
   std::string text = formatted(
       "motion: %.3f s at %g mm/s (%.3f s with the faster tool at that speed throughout), %zu "
       "samples at %g Hz",

@@ -4,20 +4,20 @@
 #include <string>
 
 #include "swivel/core/answer/answer.hpp"
+#include "swivel/core/answer/motion.hpp"
 #include "swivel/core/answer/refined.hpp"
-#include "swivel/core/motion/workcell_motion.hpp"
 #include "swivel/io/motions/motion.hpp"
 
 namespace swivel::cli {
 
 /// Returns what refining the arms of a workcell brought, for people. `names` are those of both
 /// arms.
-[[nodiscard]] std::string refined_workcell_text(const RefinedWorkcell& refined,
+[[nodiscard]] std::string refined_workcell_text(const RefinedArms& refined,
                                                 const std::array<std::string, 2>& names);
 
 /// Returns the figures of a workcell's motion for people, or why there is none. `joint_names` and
 /// `names` are those of both arms.
-[[nodiscard]] std::string workcell_motion_text(const WorkcellTiming& timing,
+[[nodiscard]] std::string workcell_motion_text(const MotionTiming& timing,
                                                const std::array<io::JointNames, 2>& joint_names,
                                                const std::array<std::string, 2>& names);
 

@@ -88,6 +88,18 @@ void serialize(A& archive, RunAnswer& x) {
   static_assert(sizeof(Listed) == sizeof(RunAnswer));
   archive(static_cast<Measures&>(x), x.run, x.status, x.least_cost, x.lattice, x.diagnosis);
 }
+/// Lists the members of an ArmMotion and of its base.
+template <class A>
+void serialize(A& archive, ArmMotion& x) {
+  struct Listed : TimedPath {
+    std::string name;
+    std::vector<std::size_t> part;
+    std::vector<ProcessEvent> events;
+    std::vector<TimedPath> runs;
+  };
+  static_assert(sizeof(Listed) == sizeof(ArmMotion));
+  archive(static_cast<TimedPath&>(x), x.name, x.part, x.events, x.runs);
+}
 /// Lists the members of a PlanResult and of its base.
 template <class A>
 void serialize(A& archive, PlanResult& x) {

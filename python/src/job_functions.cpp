@@ -101,7 +101,7 @@ swivel::Problem executed_by(const swivel::Problem& job, const Parts& parts) {
 }
 
 swivel::Problem executed_by(const swivel::Problem& job, const JobMotion& motion) {
-  const swivel::JobMotion& timed = *motion.motion();
+  const swivel::ArmMotion& timed = *motion.motion();
   std::vector<RunInRows> runs;
   for (const StrokeRun& run : motion.order) {
     const swivel::Stroke& stroke = motion.job->arm().strokes[run.stroke];
@@ -169,9 +169,11 @@ JobMotion from_file(const PreparedRobot& robot, const swivel::Problem& job, io::
   motion.joint_names = robot.arm().chain.joint_names;
   motion.job = without_surroundings(job);
   motion.order = runs_of_motion(robot, job, read.strokes, read.motion);
-  auto timing = std::make_shared<JobTimingResult>();
-  timing->motion =
-      complete_job_motion(robot, job, motion.order, std::move(read.motion), read.stated, budget);
+  auto timing = std::make_shared<MotionTiming>();
+  swivel::Motion& all = timing->motion.emplace();
+  all.arms.push_back(
+      complete_job_motion(robot, job, motion.order, std::move(read.motion), read.stated, budget));
+  all.rate = all.arms.front().rate, all.duration = all.arms.front().duration;
   motion.timing = std::move(timing);
   return motion;
 }
@@ -207,7 +209,7 @@ JobCheckResult check_timed(const PreparedRobot& robot, const swivel::Problem& jo
     return stroke_of(job, motion.job->arm().strokes[k].name);
   };
   std::vector<StrokeRun> order = motion.order;
-  swivel::JobMotion timed = *motion.motion();
+  swivel::ArmMotion timed = *motion.motion();
   for (StrokeRun& run : order) run.stroke = number(run.stroke);
   for (ProcessEvent& event : timed.events) event.stroke = number(event.stroke);
   return check_job_motion(robot, job, order, timed, options);
@@ -245,12 +247,12 @@ JobPlan plan(const JobOrFile& of, PlanOptions options,
              const std::optional<JobTimingOptions>& timing) {
   const swivel::Problem job = to_core(of);
   JobPlan plan;
-  plan.plan = std::make_shared<const JobMotionPlan>(interruptible([&](const std::stop_token& stop) {
+  plan.plan = std::make_shared<const Answer>(interruptible([&](const std::stop_token& stop) {
     options.stop = stop;
-    if (!timing) return JobMotionPlan{swivel::plan_job(job, options), {}};
+    if (!timing) return swivel::plan_job(job, options);
     return plan_job_motion(prepared(job, stop), job, options, *timing);
   }));
-  plan.job = without_surroundings(executed_problem(job, plan.plan->result));
+  plan.job = without_surroundings(executed_problem(job, *plan.plan));
   plan.timing = timing;
   plan.given = std::make_shared<const swivel::Problem>(job);
   return plan;
@@ -323,7 +325,7 @@ JobMotion time(const JobOrFile& of, const Timeable& rows, const JobTimingOptions
     for (const swivel::Part& part : parts)
       if (part.run) motion.order.push_back(*part.run);
     auto result =
-        std::make_shared<JobTimingResult>(swivel::time_job(robot, job, parts, timing, budget));
+        std::make_shared<MotionTiming>(swivel::time_job(robot, job, parts, timing, budget));
     motion.timing = result;
     if (!result->motion) return motion;
     // Motions keep more clearance between rows than trajectories do: transitions may lack it.

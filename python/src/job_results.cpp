@@ -105,7 +105,7 @@ std::string motion_words(const JobMotion& motion) {
     return "not executable: " + part_words(motion, motion.timing->failed_part) +
            formatted(": s = %.4f m: ", failure->s) + failure->reason;
   if (!motion.fault.empty()) return "not executable: " + motion.fault;
-  const swivel::JobMotion& m = *motion.timing->motion;
+  const swivel::ArmMotion& m = motion.timing->motion->arms.front();
   const std::size_t lift_offs = lift_off_count(*motion.job);
   return formatted("%.3f s, %zu strokes", m.duration, m.events.size() / 2 - lift_offs) +
          lift_words(lift_offs) + formatted(", %zu samples at %.6g Hz", m.rows.size(), m.rate);
@@ -134,7 +134,7 @@ std::string plan_words(const JobPlan& plan) {
       formatted(": %zu strokes", plan.job->arm().strokes.size() - result.arm().lift_offs.size()) +
       lift_words(result.arm().lift_offs.size()) + formatted(", cost %.6g", result.cost);
   if (const auto gap = gap_of(result)) text += formatted(", %.3g %% above its bound", 100 * *gap);
-  if (plan.plan->timing) text += "; " + motion_words(motion_of(plan));
+  if (plan.plan->motion) text += "; " + motion_words(motion_of(plan));
   if (plan.plan->stopped) text += "; stopped before its motion";
   return text;
 }
@@ -350,7 +350,7 @@ void bind_plan(py::module_& m) {
       .def_property_readonly(
           "motion",
           [](const JobPlan& p) -> std::optional<JobMotion> {
-            if (!p.plan->timing) return {};
+            if (!p.plan->motion) return {};
             return motion_of(p);
           },
           "JobMotion, where it was asked for and there is a job.")
@@ -393,12 +393,7 @@ void bind_plan(py::module_& m) {
       .def_property_readonly("warnings", [](const JobPlan& p) { return p.result().warnings; })
       .def("to_csv", &csv_of, "The trajectory of the job as CSV, docs/formats.md.")
       .def(
-          "to_json",
-          [](const JobPlan& p) {
-            const auto& timing = p.plan->timing;
-            return io::to_job_json(p.result(), *p.job,
-                                   {timing ? &*timing : nullptr, p.plan->stopped});
-          },
+          "to_json", [](const JobPlan& p) { return io::to_json(p.result(), *p.job); },
           "The result of the job as text, docs/formats.md.")
       .def(
           "save",
@@ -570,7 +565,7 @@ void bind_motion(py::module_& m) {
           ".mcap (JointState, with /process).")
       .def("__len__",
            [](const JobMotion& x) {
-             return x.timing->motion ? x.timing->motion->rows.size() : std::size_t{0};
+             return x.timing->motion ? x.timing->motion->arms.front().rows.size() : std::size_t{0};
            })
       .def("__repr__", [](const JobMotion& x) { return "<JobMotion " + motion_words(x) + ">"; });
 }
@@ -607,9 +602,9 @@ void bind_check(py::module_& m) {
 
 }  // namespace
 
-std::shared_ptr<const swivel::JobMotion> JobMotion::motion() const {
+std::shared_ptr<const swivel::ArmMotion> JobMotion::motion() const {
   if (!timing->motion) throw py::value_error("the motion is " + motion_words(*this));
-  return {timing, &*timing->motion};
+  return {timing, &timing->motion->arms.front()};
 }
 
 std::shared_ptr<const swivel::Problem> without_surroundings(const swivel::Problem& job) {
@@ -639,9 +634,9 @@ std::vector<JobPart> parts_of(const JobPlan& plan, const std::vector<swivel::Par
 }
 
 JobMotion motion_of(const JobPlan& plan) {
-  if (!plan.plan->timing) throw py::value_error("the plan has no motion");
+  if (!plan.plan->motion) throw py::value_error("the plan has no motion");
   JobMotion motion;
-  motion.timing = std::shared_ptr<const JobTimingResult>(plan.plan, &*plan.plan->timing);
+  motion.timing = std::shared_ptr<const MotionTiming>(plan.plan, &*plan.plan->motion);
   motion.job = plan.job;
   for (const RunAnswer& run : plan.result().arm().runs) motion.order.push_back(run.run);
   motion.joint_names = plan.result().arm().joint_names;

@@ -10,7 +10,7 @@
 #include "job.hpp"
 #include "results.hpp"
 #include "swivel/core/answer/answer.hpp"
-#include "swivel/core/motion/job_motion.hpp"
+#include "swivel/core/answer/motion.hpp"
 #include "swivel/planner/job/check_job.hpp"
 #include "swivel/planner/job/time_job.hpp"
 
@@ -43,25 +43,25 @@ struct JobRun {
 };
 
 struct JobPlan {
-  std::shared_ptr<const JobMotionPlan> plan;
+  std::shared_ptr<const Answer> plan;
   /// The job's strokes, home and order, by which the answer is written; without robot and scene.
   /// Runs between lift-offs are strokes of their own.
   std::shared_ptr<const swivel::Problem> job;
   std::optional<JobTimingOptions> timing = {};  ///< set where a motion was asked for
   /// The job as it was given, of which reports are made. Null after unpickling.
   std::shared_ptr<const swivel::Problem> given = nullptr;
-  [[nodiscard]] const Answer& result() const { return plan->result; }
+  [[nodiscard]] const Answer& result() const { return *plan; }
 };
 
 struct JobMotion {
-  std::shared_ptr<const JobTimingResult> timing;
+  std::shared_ptr<const MotionTiming> timing;
   std::shared_ptr<const swivel::Problem> job;  ///< as JobPlan has it
   std::vector<StrokeRun> order;                ///< of the runs
   io::JointNames joint_names;
   /// What the check of the motion found, for which it is none; empty: nothing.
   std::string fault;
   /// Throws ValueError if it is not executable.
-  [[nodiscard]] std::shared_ptr<const swivel::JobMotion> motion() const;
+  [[nodiscard]] std::shared_ptr<const swivel::ArmMotion> motion() const;
 };
 
 struct JobCheck {

@@ -773,10 +773,7 @@ void bind_plan(py::module_& m) {
       .def(
           "to_json",
           [](const Plan& p) {
-            const MotionPlan& plan = *p.plan;
-            return io::to_json(plan.result, {plan.refinement ? &*plan.refinement : nullptr,
-                                             plan.motion ? &*plan.motion : nullptr,
-                                             p.timing.value_or(TimingOptions{}), nullptr});
+            return io::to_json(answer_of(*p.plan, p.timing), one_path(PathProblem()));
           },
           "RESULT.json as text, docs/formats.md.")
       .def("__str__", [](const Plan& p) { return without_end(answer_text(p.result())); })

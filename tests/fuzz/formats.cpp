@@ -353,7 +353,7 @@ Reader job_reader(const TempFolder& folder) {
   const io::JointNames joints{"a", "b", "c", "d", "e", "f", "g"};
   Problem job;
   job.arm().lift.emplace();
-  JobMotion motion;
+  ArmMotion motion;
   PlanResult rows = short_plan(joints);
   Answer result;
   result.arm().joint_names = joints;
@@ -395,9 +395,9 @@ Reader workcell_reader(const TempFolder& folder) {
                                              io::JointNames{"h", "i", "j", "k", "l", "m", "n"}};
   Answer result;
   result.arms.clear();
-  WorkcellMotion motion;
-  motion.names = names;
+  Motion motion;
   for (std::size_t k = 0; k < 2; ++k) {
+    motion.arms.emplace_back().name = names[k];
     result.arms.push_back(answer_of(short_plan(joints[k])).arm());
     result.arms[k].name = names[k];
     for (const TrajectoryRow& row : result.arms[k].rows()) {

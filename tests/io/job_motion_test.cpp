@@ -30,8 +30,8 @@ Problem two_strokes(bool home) {
 
 /// Returns a motion of two_strokes(), the second first. Its numbers are random. It
 /// has lines before and after the strokes where `lines` is true.
-JobMotion random_motion(Random& random, const Problem& job, bool lines, bool rolls) {
-  JobMotion motion;
+ArmMotion random_motion(Random& random, const Problem& job, bool lines, bool rolls) {
+  ArmMotion motion;
   motion.rate = 250;
   const std::size_t parts = job.arm().home ? 5 : 3;
   const std::size_t first_run = job.arm().home ? 1 : 0;
@@ -67,7 +67,7 @@ JobMotion random_motion(Random& random, const Problem& job, bool lines, bool rol
   return motion;
 }
 
-void expect_same(const JobMotion& is, const JobMotion& was) {
+void expect_same(const ArmMotion& is, const ArmMotion& was) {
   ASSERT_EQ(is.rows.size(), was.rows.size());
   for (std::size_t k = 0; k < is.rows.size(); ++k) {
     EXPECT_EQ(is.rows[k].t, was.rows[k].t);
@@ -98,7 +98,7 @@ TEST(JobMotion, EveryBitIsReadAgain) {
   for (int trial = 0; trial < swivel::test::trials(100); ++trial) {
     SCOPED_TRACE("trial " + std::to_string(trial));
     const Problem job = two_strokes(random.coin());
-    const JobMotion motion = random_motion(random, job, random.coin(), random.coin());
+    const ArmMotion motion = random_motion(random, job, random.coin(), random.coin());
     const fs::path file = folder.write("m.csv", to_job_motion_csv(motion, job, kNames));
     const JobMotionFile read = load_job_motion(file, job, kNames);
     expect_same(read.motion, motion);
@@ -114,7 +114,7 @@ TEST(JobMotion, OtherFormatsHaveEventsAndAreReadWithoutThem) {
   const TempFolder folder;
   Random random(5);
   const Problem job = two_strokes(true);
-  const JobMotion motion = random_motion(random, job, true, false);
+  const ArmMotion motion = random_motion(random, job, true, false);
   for (const char* const name : {"m.json", "m.yaml", "m.mcap"}) {
     SCOPED_TRACE(name);
     const std::string text = job_motion_text(motion, job, kNames, "base", name);
@@ -145,7 +145,7 @@ TEST(JobMotion, OtherFormatsAreReadAgain) {
   int files = 0;
   for (int trial = 0; trial < swivel::test::trials(100); ++trial) {
     const Problem job = two_strokes(random.coin());
-    const JobMotion motion = random_motion(random, job, random.coin(), false);
+    const ArmMotion motion = random_motion(random, job, random.coin(), false);
     for (const char* const name : {"m.json", "m.yaml", "m.mcap"}) {
       SCOPED_TRACE(std::string(name) + ", trial " + std::to_string(trial));
       const std::string text = job_motion_text(motion, job, kNames, "base", name);
@@ -181,7 +181,7 @@ TEST(JobMotion, TrajectoryFilesRefuseRowsOfJobs) {
   const TempFolder folder;
   Random random(6);
   const Problem job = two_strokes(true);
-  const JobMotion motion = random_motion(random, job, true, false);
+  const ArmMotion motion = random_motion(random, job, true, false);
   const fs::path file = folder.write("m.csv", to_job_motion_csv(motion, job, kNames));
   expect_message(input_error([&] { (void)load_trajectory_file(file, kNames); }),
                  {"m.csv:1", "'stroke' and 'process' are those of a job's rows"});
@@ -197,7 +197,7 @@ TEST(JobMotion, TrajectoryFilesRefuseRowsOfJobs) {
 TEST(JobMotion, StrokesBetweenTwoSamplesHaveNoRows) {
   Random random(7);
   const Problem job = two_strokes(true);
-  JobMotion motion = random_motion(random, job, true, false);
+  ArmMotion motion = random_motion(random, job, true, false);
   motion.events[1].t = motion.events[0].t;
   for (const char* const name : {"m.csv", "m.json", "m.mcap"})
     expect_message(input_error([&] { (void)job_motion_text(motion, job, kNames, "base", name); }),

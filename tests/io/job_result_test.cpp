@@ -243,7 +243,7 @@ TEST(JobTrajectory, BadParts) {
 }
 
 TEST(JobResult, Solved) {
-  const Json json = Json::parse(to_job_json(plan_of_two(), two_strokes()));
+  const Json json = Json::parse(to_json(plan_of_two(), two_strokes()));
   EXPECT_EQ(json["status"], "solved");
   EXPECT_EQ(json["cost"], 6.25);
   EXPECT_EQ(json["lattice_cost"], 6.0);
@@ -274,11 +274,11 @@ TEST(JobResult, Solved) {
   EXPECT_EQ(json["parts"][3]["rows"][2]["branch"], 5);
   Answer optimal = plan_of_two();
   optimal.bound = optimal.lattice_cost;
-  EXPECT_EQ(Json::parse(to_job_json(optimal, two_strokes()))["gap"], 0.0);
+  EXPECT_EQ(Json::parse(to_json(optimal, two_strokes()))["gap"], 0.0);
   optimal.lattice_cost = optimal.bound = 0;
-  EXPECT_EQ(Json::parse(to_job_json(optimal, two_strokes()))["gap"], 0.0);
+  EXPECT_EQ(Json::parse(to_json(optimal, two_strokes()))["gap"], 0.0);
   optimal.lattice_cost = 1;
-  EXPECT_TRUE(Json::parse(to_job_json(optimal, two_strokes()))["gap"].is_null());
+  EXPECT_TRUE(Json::parse(to_json(optimal, two_strokes()))["gap"].is_null());
 }
 
 /// Returns the result where a stroke has no path, or where no way leads to a run.
@@ -297,7 +297,7 @@ Answer without_a_job(bool stroke) {
 }
 
 TEST(JobResult, Unsolved) {
-  const Json stroke = Json::parse(to_job_json(without_a_job(true), two_strokes()));
+  const Json stroke = Json::parse(to_json(without_a_job(true), two_strokes()));
   for (const char* const key : {"cost", "bound", "bound_any", "gap", "checked", "no_transition"})
     EXPECT_TRUE(stroke[key].is_null()) << key;
   EXPECT_EQ(stroke["runs"][0]["status"], "infeasible");
@@ -305,20 +305,20 @@ TEST(JobResult, Unsolved) {
   EXPECT_TRUE(stroke["runs"][0]["cost"].is_null());
   EXPECT_FALSE(stroke["runs"][0]["diagnosis"].is_null());
   EXPECT_EQ(stroke["parts"], Json::array());
-  const Json way = Json::parse(to_job_json(without_a_job(false), two_strokes()));
+  const Json way = Json::parse(to_json(without_a_job(false), two_strokes()));
   EXPECT_EQ(way["no_transition"], Json::parse(R"({"from": "left", "to": null, "where": "end",
                             "bodies": ["link_5", "post"]})"));
 }
 
 /// Returns a motion in time of two_strokes(), or why its fourth part has none.
-JobTimingResult timed_plan(bool executable) {
-  JobTimingResult timed;
+MotionTiming timed_plan(bool executable) {
+  MotionTiming timed;
   if (!executable) {
     timed.failure = NoMotion{0.05, "the solution changes from branch 4 to 5"};
     timed.failed_part = 3;
     return timed;
   }
-  JobMotion& motion = timed.motion.emplace();
+  ArmMotion& motion = timed.motion.emplace().arms.emplace_back();
   motion.rows.resize(3);
   motion.rate = 250;
   motion.duration = 0.008;
@@ -329,20 +329,21 @@ JobTimingResult timed_plan(bool executable) {
 
 TEST(JobResult, Motions) {
   const Problem job = two_strokes();
-  EXPECT_TRUE(Json::parse(to_job_json(plan_of_two(), job))["motion"].is_null());
-  const JobTimingResult good = timed_plan(true), bad = timed_plan(false);
-  EXPECT_EQ(Json::parse(to_job_json(plan_of_two(), job, {&good}))["motion"],
+  EXPECT_TRUE(Json::parse(to_json(plan_of_two(), job))["motion"].is_null());
+  Answer good = plan_of_two(), bad = plan_of_two(), stopped = plan_of_two();
+  good.motion = timed_plan(true);
+  bad.motion = timed_plan(false);
+  stopped.stopped = true;
+  EXPECT_EQ(Json::parse(to_json(good, job))["motion"],
             Json::parse(R"({"executable": true, "reason": null, "part": null, "at_s": null,
                             "rate": 250.0, "samples": 3, "duration": 0.008, "events": [
                             {"t": 0.004, "stroke": "right", "s": 0.0, "process": "on"},
                             {"t": 0.008, "stroke": "right", "s": 0.1, "process": "off"}],
                             "warnings": ["a warning"]})"));
-  EXPECT_EQ(Json::parse(to_job_json(plan_of_two(), job, {&bad}))["motion"],
-            Json::parse(R"({"executable": false,
+  EXPECT_EQ(Json::parse(to_json(bad, job))["motion"], Json::parse(R"({"executable": false,
                             "reason": "the solution changes from branch 4 to 5",
                             "part": 3, "at_s": 0.05})"));
-  EXPECT_EQ(Json::parse(to_job_json(plan_of_two(), job, {nullptr, true}))["motion"]["reason"],
-            "stopped");
+  EXPECT_EQ(Json::parse(to_json(stopped, job))["motion"]["reason"], "stopped");
 }
 
 /// Adds the names of all keys of a document; list items count as one.
@@ -381,17 +382,18 @@ TEST(JobResult, KeysAreThoseOfTheSchema) {
   Answer unproved = turning;
   unproved.arm().partial.swap(unproved.arm().parts);
   for (const Answer& result : {turning, unproved, without_a_job(true), without_a_job(false)})
-    add_keys(Json::parse(to_job_json(result, two_strokes())), "", seen);
-  const JobTimingResult timed = timed_plan(true);
-  add_keys(Json::parse(to_job_json(plan_of_two(), two_strokes(), {&timed})), "", seen);
+    add_keys(Json::parse(to_json(result, two_strokes())), "", seen);
+  Answer timed = plan_of_two();
+  timed.motion = timed_plan(true);
+  add_keys(Json::parse(to_json(timed, two_strokes())), "", seen);
   Answer lifted = plan_of_two();
   lifted.arm().lift_offs.push_back({{0, 0.05, 0.05}, 0.06, {.kind = Cause::Kind::kSingular}});
-  add_keys(Json::parse(to_job_json(lifted, executed_problem(two_strokes(), lifted))), "", seen);
+  add_keys(Json::parse(to_json(lifted, executed_problem(two_strokes(), lifted))), "", seen);
   AdviceOnJob advice;
   advice.job.push_back({.change = JobAdvice::Change::kHome, .strokes = {}, .home = Config::Zero()});
   advice.strokes.push_back({"left", {Advice{}}});
-  add_keys(Json::parse(to_job_json(without_a_job(true), two_strokes(), {nullptr, false, &advice})),
-           "", seen);
+  const AnyAdvice any = advice;
+  add_keys(Json::parse(to_json(without_a_job(true), two_strokes(), {.advice = &any})), "", seen);
   for (const std::string& key : seen) EXPECT_TRUE(known.contains(key)) << key;
   // The parts that plans have as well are tested with those (result_test.cpp, tests/docs).
   for (const std::string& key : known) {

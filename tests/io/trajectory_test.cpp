@@ -451,10 +451,10 @@ TEST(Trajectory, RollsOfTwoArmsAreNamedByArm) {
   const std::array<JointNames, 2> joints{
       {{"a", "b", "c", "d", "e", "f", "roll"}, {"g", "h", "i", "j", "k", "l", "roll"}}};
   Answer result;
-  WorkcellMotion motion;
+  Motion motion;
   result.arms.clear();
-  motion.names = names;
   for (std::size_t k = 0; k < 2; ++k) {
+    motion.arms.emplace_back().name = names[k];
     result.arms.push_back(answer_of(random_result(3)).arm());
     result.arms[k].name = names[k];
     result.arms[k].joint_names = joints[k];

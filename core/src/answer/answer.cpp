@@ -100,6 +100,7 @@ const char* to_string(PairSearch search) {
 
 Problem executed_problem(const Problem& problem, const Answer& answer) {
   const std::vector<LiftOffAnswer>& lift_offs = answer.arm().lift_offs;
+  if (lift_offs.empty()) return problem;
   return with_lift_offs(problem, {lift_offs.begin(), lift_offs.end()});
 }
 

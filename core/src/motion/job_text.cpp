@@ -10,7 +10,7 @@ namespace swivel {
 namespace {
 
 /// Returns the speed that a job's motion was asked for along its strokes, in words.
-std::string speed_words(const JobMotion& motion, const Problem& job) {
+std::string speed_words(const ArmMotion& motion, const Problem& job) {
   if (motion.runs.empty()) return "";
   double least = motion.runs.front().speed, most = least;
   for (const TimedPath& run : motion.runs)
@@ -22,7 +22,7 @@ std::string speed_words(const JobMotion& motion, const Problem& job) {
 
 }  // namespace
 
-std::string job_motion_text(const JobTimingResult& timing, const std::vector<Part>& parts,
+std::string job_motion_text(const MotionTiming& timing, const std::vector<Part>& parts,
                             const Problem& job) {
   if (const auto& failure = timing.failure) {
     const std::size_t k = timing.failed_part;
@@ -34,7 +34,7 @@ std::string job_motion_text(const JobTimingResult& timing, const std::vector<Par
     return "not executable: " + part + formatted(": s = %.4f m: ", failure->s) + failure->reason +
            '\n';
   }
-  const JobMotion& motion = *timing.motion;
+  const ArmMotion& motion = timing.motion->arms.front();
   double on_strokes = 0;
   for (std::size_t k = 1; k < motion.rows.size(); ++k)
     if (parts.at(motion.part[k]).run) on_strokes += motion.rows[k].t - motion.rows[k - 1].t;

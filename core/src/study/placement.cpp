@@ -27,14 +27,14 @@ double tidy(double value) {
 }
 
 /// A rigid motion of the base frame: a turn about its origin, then a shift.
-struct Motion {
+struct RigidMotion {
   bool turns = false;
   Matrix3d turn = Matrix3d::Identity();
   Vector3d shift = Vector3d::Zero();
 };
 
-Motion motion_of(const Offset& offset) {
-  Motion motion;
+RigidMotion motion_of(const Offset& offset) {
+  RigidMotion motion;
   motion.turns = offset[3] != 0 || offset[4] != 0 || offset[5] != 0;
   if (motion.turns) motion.turn = from_rpy({offset[3], offset[4], offset[5]}).toRotationMatrix();
   motion.shift = {offset[0], offset[1], offset[2]};
@@ -202,7 +202,7 @@ PathProblem placed_problem(const PathProblem& problem, const Movable& thing, con
   require_no_arm(thing);
   require_thing(thing, offset);
   PathProblem result = problem;
-  const Motion motion = motion_of(offset);
+  const RigidMotion motion = motion_of(offset);
   const auto named = [&](const std::string& name) {
     const auto found = std::find_if(result.scene.begin(), result.scene.end(),
                                     [&](const auto& o) { return o.name == name; });

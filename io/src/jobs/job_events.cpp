@@ -14,7 +14,7 @@
 
 namespace swivel::io {
 
-std::vector<std::optional<std::size_t>> strokes_of_parts(const JobMotion& motion,
+std::vector<std::optional<std::size_t>> strokes_of_parts(const ArmMotion& motion,
                                                          const Problem& job) {
   std::vector<std::optional<std::size_t>> strokes;
   if (!motion.part.empty()) strokes.resize(motion.part.back() + 1);
@@ -27,7 +27,7 @@ std::vector<std::optional<std::size_t>> strokes_of_parts(const JobMotion& motion
   return strokes;
 }
 
-void require_samples_of_strokes(const JobMotion& motion, const Problem& job) {
+void require_samples_of_strokes(const ArmMotion& motion, const Problem& job) {
   for (std::size_t k = 1; k < motion.events.size(); ++k)
     if (motion.events[k].t <= motion.events[k - 1].t)
       throw InputError(job.source, "stroke '" + job.arm().strokes[motion.events[k].stroke].name +
@@ -35,7 +35,7 @@ void require_samples_of_strokes(const JobMotion& motion, const Problem& job) {
                                        "samples a second");
 }
 
-std::vector<EventMessage> event_messages(const JobMotion& motion, const Problem& job) {
+std::vector<EventMessage> event_messages(const ArmMotion& motion, const Problem& job) {
   require_samples_of_strokes(motion, job);
   // Returns the fields of the run to which a part leads: its begin and its end, in time and place.
   const auto run_of = [&](std::size_t part, double piece) {

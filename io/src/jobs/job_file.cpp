@@ -101,7 +101,7 @@ void begin_at_runs(JobTrajectory& read, const Problem& job) {
       for (TrajectoryRow& row : part.rows) row.s -= s_of_piece(job.arm().strokes[*stroke]);
 }
 void begin_at_runs(JobMotionFile& read, const Problem& job) {
-  JobMotion& motion = read.motion;
+  ArmMotion& motion = read.motion;
   for (ProcessEvent& event : motion.events) event.s -= s_of_piece(job.arm().strokes[event.stroke]);
   if (!read.stated.s) return;
   const auto begin_of = [&](std::size_t part) -> double {

@@ -23,7 +23,7 @@ std::vector<std::string> header_of(const JointNames& joint_names, bool roll) {
 }
 
 /// Returns for each row of a motion whether the process is on from it to the next row.
-std::vector<bool> process_of_motion(const JobMotion& motion) {
+std::vector<bool> process_of_motion(const ArmMotion& motion) {
   std::vector<bool> process(motion.rows.size());
   std::size_t event = 0;
   bool on = false;
@@ -37,7 +37,7 @@ std::vector<bool> process_of_motion(const JobMotion& motion) {
 
 }  // namespace
 
-std::string to_job_motion_csv(const JobMotion& motion, const Problem& job,
+std::string to_job_motion_csv(const ArmMotion& motion, const Problem& job,
                               const JointNames& joint_names) {
   const std::vector<std::optional<std::size_t>> strokes = strokes_of_parts(motion, job);
   require_samples_of_strokes(motion, job);
@@ -100,7 +100,7 @@ class JobMotionRows {
     JobMotionFile read;
     read.stated = file_.arms.front().stated;
     require_places(states_places(read.stated));
-    JobMotion& motion = read.motion;
+    ArmMotion& motion = read.motion;
     find_events(motion.events);
     motion.duration = rows_.back().t - rows_.front().t;
     motion.rate = static_cast<double>(rows_.size() - 1) / motion.duration;

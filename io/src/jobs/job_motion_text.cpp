@@ -5,7 +5,7 @@
 
 namespace swivel::io {
 
-std::string job_motion_text(const JobMotion& motion, const Problem& job,
+std::string job_motion_text(const ArmMotion& motion, const Problem& job,
                             const JointNames& joint_names, const std::string& frame_id,
                             const std::filesystem::path& file) {
   require_motion_format(file);

@@ -19,12 +19,12 @@ namespace swivel::io {
 [[nodiscard]] std::string placeless_fields(const TrajectoryRow& row, bool roll);
 
 /// Returns for each part of a job's motion the index of its stroke; none for transitions.
-[[nodiscard]] std::vector<std::optional<std::size_t>> strokes_of_parts(const JobMotion& motion,
+[[nodiscard]] std::vector<std::optional<std::size_t>> strokes_of_parts(const ArmMotion& motion,
                                                                        const Problem& job);
 /// Throws InputError if a stroke begins and ends between two samples of a motion.
-void require_samples_of_strokes(const JobMotion& motion, const Problem& job);
+void require_samples_of_strokes(const ArmMotion& motion, const Problem& job);
 /// Returns the events of a job's motion as messages. Throws as require_samples_of_strokes() does.
-[[nodiscard]] std::vector<EventMessage> event_messages(const JobMotion& motion, const Problem& job);
+[[nodiscard]] std::vector<EventMessage> event_messages(const ArmMotion& motion, const Problem& job);
 
 /// Reads the rows of a job from a file of any format. Rows of messages get from their events what
 /// those of a table state by themselves: stroke and process, and s where a run begins, where its

@@ -9,10 +9,10 @@ namespace swivel::io {
 
 namespace {
 
-/// Writes the result of a job.
-class JobWriter {
+/// Writes the result of an arm that runs strokes.
+class StrokesWriter {
  public:
-  JobWriter(const Answer& result, const Problem& job, const JobExtras& extras)
+  StrokesWriter(const Answer& result, const Problem& job, const AnswerExtras& extras)
       : result_(result),
         arm_(result.arm()),
         job_(job),
@@ -37,7 +37,8 @@ class JobWriter {
     json["transitions"] = transitions();
     json["lift_offs"] = lift_offs();
     json["no_transition"] = no_transition();
-    json["advice"] = extras_.advice ? advice(*extras_.advice) : Json(nullptr);
+    json["advice"] =
+        extras_.advice ? advice(std::get<AdviceOnJob>(*extras_.advice)) : Json(nullptr);
     json["counters"] = counters_json(arm_.counters);
     json["transition_counters"] = {{"pairs", arm_.transitions.pairs},
                                    {"searches", arm_.transitions.searches},
@@ -177,19 +178,19 @@ class JobWriter {
   }
 
   [[nodiscard]] Json motion() const {
-    const JobTimingResult* timed = extras_.motion;
-    if (timed == nullptr && !extras_.stopped) return nullptr;
-    Json json = {{"executable", timed != nullptr && timed->motion.has_value()},
-                 {"reason", timed == nullptr ? Json("stopped") : Json(nullptr)},
+    const std::optional<MotionTiming>& timed = result_.motion;
+    if (!timed && !result_.stopped) return nullptr;
+    Json json = {{"executable", result_.timed() != nullptr},
+                 {"reason", timed ? Json(nullptr) : Json("stopped")},
                  {"part", nullptr},
                  {"at_s", nullptr}};
-    if (timed != nullptr && timed->failure) {
+    if (timed && timed->failure) {
       json["reason"] = timed->failure->reason;
       json["part"] = timed->failed_part;
       json["at_s"] = timed->failure->s;
     }
-    if (timed == nullptr || !timed->motion) return json;
-    const JobMotion& motion = *timed->motion;
+    if (result_.timed() == nullptr) return json;
+    const ArmMotion& motion = result_.timed()->arms.front();
     json["rate"] = motion.rate;
     json["samples"] = motion.rows.size();
     json["duration"] = motion.duration;
@@ -223,14 +224,14 @@ class JobWriter {
   const Answer& result_;
   const ArmAnswer& arm_;
   const Problem& job_;
-  const JobExtras& extras_;
+  const AnswerExtras& extras_;
   const bool solved_, roll_;
 };
 
 }  // namespace
 
-std::string to_job_json(const Answer& result, const Problem& job, const JobExtras& extras) {
-  return document_of(JobWriter(result, job, extras).write());
+Json strokes_json(const Answer& answer, const Problem& problem, const AnswerExtras& extras) {
+  return StrokesWriter(answer, problem, extras).write();
 }
 
 }  // namespace swivel::io

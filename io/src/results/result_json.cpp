@@ -33,20 +33,62 @@ Json certificate_json(const InfeasibilityCertificate& certificate, std::size_t b
           {"bytes", bytes}};
 }
 
-Json motion_json(const TimingResult& timed, const TimingOptions& asked, const JointNames& names) {
-  Json json = {{"executable", timed.motion.has_value()},
-               {"reason", timed.failure ? Json(timed.failure->reason) : Json(nullptr)},
-               {"at_s", timed.failure ? Json(timed.failure->s) : Json(nullptr)},
+/// Returns the motion along one path.
+Json motion_json(const Answer& answer) {
+  if (!answer.motion) return nullptr;
+  const TimingOptions& asked = *answer.timing;
+  const auto& failure = answer.motion->failure;
+  Json json = {{"executable", answer.timed() != nullptr},
+               {"reason", failure ? Json(failure->reason) : Json(nullptr)},
+               {"at_s", failure ? Json(failure->s) : Json(nullptr)},
                {"speed", asked.speed},
                {"turn_speed", or_null(asked.turn_speed)},
                {"rate", asked.rate},
                {"chord", or_null(asked.chord)}};
-  if (!timed.motion) return json;
-  const TimedPath& motion = *timed.motion;
+  if (answer.timed() == nullptr) return json;
+  const TimedPath& motion = answer.timed()->arms.front();
   json["samples"] = motion.rows.size();
   json["duration"] = motion.duration;
   json["ideal"] = motion.ideal;
-  add_motion_measures(json, motion, names);
+  add_motion_measures(json, motion, answer.arm().joint_names);
+  return json;
+}
+
+/// Returns the result of one path.
+Json path_json(const Answer& answer, const AnswerExtras& extras) {
+  const ArmAnswer& arm = answer.arm();
+  const RunAnswer& run = arm.run();
+  const bool solved = answer.status == PlanStatus::kSolved;
+  Json json;
+  json["schema_version"] = kResultVersion;
+  json["status"] = to_string(answer.status);
+  json["summary"] = summary_json(run, arm.rows());
+  json["cost"] = solved ? Json(answer.cost) : Json(nullptr);
+  json["checked"] = solved ? Json(answer.checked) : Json(nullptr);
+  json["planner"] = answer.planner;
+  json["threads"] = answer.threads;
+  json["lattice"] = lattice_json(run.lattice, solved);
+  json["counters"] = counters_json(arm.counters);
+  json["time_ms"] = time_json(answer.time_ms);
+  add_measures(json, run, solved);
+  json["refinement"] =
+      answer.refinement ? refinement_json(answer.refinement->arms.front()) : Json(nullptr);
+  json["motion"] = motion_json(answer);
+  json["diagnosis"] = answer.status == PlanStatus::kInfeasible && run.diagnosis
+                          ? diagnosis_json(*run.diagnosis)
+                          : Json(nullptr);
+  json["advice"] =
+      extras.advice ? advice_json(std::get<std::vector<Advice>>(*extras.advice)) : Json(nullptr);
+  json["certificate"] = extras.certificate
+                            ? certificate_json(*extras.certificate, extras.certificate_bytes)
+                            : Json(nullptr);
+  json["trajectory"] = trajectory_json(arm.rows());
+  json["partial"] = trajectory_json(arm.partial.empty() ? std::vector<TrajectoryRow>()
+                                                        : arm.partial.front().rows);
+  json["robot_pairs"] = robot_pairs_json(arm.dropped_pairs, arm.reduced_pairs);
+  json["held"] = held_json(arm.held);
+  json["warnings"] = answer.warnings;
+  json["joint_names"] = arm.joint_names;
   return json;
 }
 
@@ -72,41 +114,14 @@ std::string error_json(const std::string& message) {
          '\n';
 }
 
-std::string to_json(const PlanResult& result) {
-  return to_json(result, PlanExtras{});
+std::string to_json(const Answer& answer, const Problem& problem, const AnswerExtras& extras) {
+  if (answer.arms.size() == 2) return document_of(two_arms_json(answer, extras));
+  if (!is_path(problem)) return document_of(strokes_json(answer, problem, extras));
+  return document_of(path_json(answer, extras));
 }
 
-std::string to_json(const PlanResult& result, const PlanExtras& extras) {
-  const bool solved = result.status == PlanStatus::kSolved;
-  Json json;
-  json["schema_version"] = kResultVersion;
-  json["status"] = to_string(result.status);
-  json["summary"] = summary_json(result, solved ? result.trajectory : std::vector<TrajectoryRow>());
-  json["cost"] = solved ? Json(result.cost) : Json(nullptr);
-  json["checked"] = solved ? Json(result.checked) : Json(nullptr);
-  json["planner"] = result.planner;
-  json["threads"] = result.threads;
-  json["lattice"] = lattice_json(result.lattice, solved);
-  json["counters"] = counters_json(result.counters);
-  json["time_ms"] = time_json(result.time_ms);
-  add_measures(json, result, solved);
-  json["refinement"] = extras.refinement ? refinement_json(*extras.refinement) : Json(nullptr);
-  json["motion"] = extras.motion ? motion_json(*extras.motion, extras.timing, result.joint_names)
-                                 : Json(nullptr);
-  json["diagnosis"] = result.status == PlanStatus::kInfeasible && result.diagnosis
-                          ? diagnosis_json(*result.diagnosis)
-                          : Json(nullptr);
-  json["advice"] = extras.advice ? advice_json(*extras.advice) : Json(nullptr);
-  json["certificate"] = extras.certificate
-                            ? certificate_json(*extras.certificate, extras.certificate_bytes)
-                            : Json(nullptr);
-  json["trajectory"] = trajectory_json(result.trajectory);
-  json["partial"] = trajectory_json(result.partial);
-  json["robot_pairs"] = robot_pairs_json(result.dropped_pairs, result.reduced_pairs);
-  json["held"] = held_json(result.held);
-  json["warnings"] = result.warnings;
-  json["joint_names"] = result.joint_names;
-  return document_of(json);
+std::string to_json(const PlanResult& result) {
+  return document_of(path_json(answer_of(result), {}));
 }
 
 }  // namespace swivel::io

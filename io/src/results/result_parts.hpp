@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Parts of results as JSON, which plans and jobs have alike.
+// Parts of results as JSON.
 #pragma once
 #include <map>
 #include <nlohmann/json.hpp>
@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "swivel/core/answer/advice.hpp"
-#include "swivel/core/answer/plan.hpp"
-#include "swivel/core/answer/refined.hpp"
-#include "swivel/core/motion/timed_path.hpp"
+#include "swivel/core/answer/answer.hpp"
+#include "swivel/core/answer/timed_path.hpp"
 #include "swivel/io/motions/motion.hpp"
+#include "swivel/io/results/result.hpp"
 
 namespace swivel::io {
 
@@ -57,5 +57,11 @@ void add_measures(Json& json, const Measures& measures, bool solved);
 
 /// Adds the keys that say how good a timed motion of an arm is. `names`: of its joints.
 void add_motion_measures(Json& json, const TimedPath& motion, const JointNames& names);
+
+/// Returns the result of one arm that runs strokes.
+[[nodiscard]] Json strokes_json(const Answer& answer, const Problem& problem,
+                                const AnswerExtras& extras);
+/// Returns the result of two arms.
+[[nodiscard]] Json two_arms_json(const Answer& answer, const AnswerExtras& extras);
 
 }  // namespace swivel::io

@@ -37,7 +37,7 @@ Json arm_json(const ArmAnswer& arm) {
 }
 
 /// Returns the refinement of both arms: what they have together, and that of each.
-Json refinement_of_both(const RefinedWorkcell& refined, const std::array<std::string, 2>& names) {
+Json refinement_of_both(const RefinedArms& refined, const std::array<std::string, 2>& names) {
   Json json = {{"cost_before", refined.cost_before},
                {"cost", refined.cost},
                {"turns", refined.turns},
@@ -51,38 +51,38 @@ Json refinement_of_both(const RefinedWorkcell& refined, const std::array<std::st
 }
 
 /// Returns the motion of both arms: what they have together, and the measures of each.
-Json workcell_motion_json(const WorkcellExtras& extras, const Answer& result) {
-  const WorkcellTiming* timed = extras.motion;
-  if (timed == nullptr && !extras.stopped) return nullptr;
-  const TimingOptions& asked = extras.timing;
-  Json json = {{"executable", timed != nullptr && timed->motion.has_value()},
-               {"reason", timed == nullptr ? Json("stopped") : Json(nullptr)},
+Json motion_of_both(const Answer& answer) {
+  const std::optional<MotionTiming>& timed = answer.motion;
+  if (!answer.timing || (!timed && !answer.stopped)) return nullptr;
+  const TimingOptions& asked = *answer.timing;
+  Json json = {{"executable", answer.timed() != nullptr},
+               {"reason", timed ? Json(nullptr) : Json("stopped")},
                {"arm", nullptr},
                {"at_s", nullptr},
                {"speed", asked.speed},
                {"turn_speed", or_null(asked.turn_speed)},
                {"rate", asked.rate},
                {"chord", or_null(asked.chord)}};
-  if (timed != nullptr && timed->failure) {
+  if (timed && timed->failure) {
     json["reason"] = timed->failure->reason;
-    json["arm"] = result.arms[timed->failed_arm].name;
+    json["arm"] = answer.arms[timed->failed_arm].name;
     json["at_s"] = timed->failure->s;
   }
-  if (timed == nullptr || !timed->motion) return json;
-  const WorkcellMotion& motion = *timed->motion;
+  if (answer.timed() == nullptr) return json;
+  const Motion& motion = *answer.timed();
   json["samples"] = motion.arms[0].rows.size();
   json["duration"] = motion.duration;
   json["ideal"] = motion.ideal;
   json["blended"] = motion.blended;
   json["follower"] = nullptr;
   if (motion.follower)
-    json["follower"] = {{"arm", motion.names[*motion.follower]},
+    json["follower"] = {{"arm", motion.arms[*motion.follower].name},
                         {"position", motion.follower_position},
                         {"angle", motion.follower_angle}};
   json["arms"] = Json::array();
   for (std::size_t k = 0; k < 2; ++k) {
-    Json arm = {{"name", motion.names[k]}, {"speed", motion.arms[k].speed}};
-    add_motion_measures(arm, motion.arms[k], result.arms[k].joint_names);
+    Json arm = {{"name", motion.arms[k].name}, {"speed", motion.arms[k].speed}};
+    add_motion_measures(arm, motion.arms[k], answer.arms[k].joint_names);
     json["arms"].push_back(std::move(arm));
   }
   json["warnings"] = motion.warnings;
@@ -105,7 +105,7 @@ Json advice_on_workcell(const AdviceOnWorkcell& all) {
 
 }  // namespace
 
-std::string to_workcell_json(const Answer& result, const WorkcellExtras& extras) {
+Json two_arms_json(const Answer& result, const AnswerExtras& extras) {
   const bool solved = result.has_rows();
   Json json;
   json["schema_version"] = kResultVersion;
@@ -117,17 +117,18 @@ std::string to_workcell_json(const Answer& result, const WorkcellExtras& extras)
   json["threads"] = result.threads;
   json["decided_by"] = to_string(result.pair.decided_by);
   json["arms"] = {arm_json(result.arms[0]), arm_json(result.arms[1])};
-  json["refinement"] = extras.refinement
-                           ? refinement_of_both(*extras.refinement, names_of_arms(result))
+  json["refinement"] = result.refinement
+                           ? refinement_of_both(*result.refinement, names_of_arms(result))
                            : Json(nullptr);
-  json["motion"] = workcell_motion_json(extras, result);
+  json["motion"] = motion_of_both(result);
   json["conflict"] = nullptr;
   if (const auto& conflict = result.pair.conflict)
     json["conflict"] = {{"layer", conflict->layer},
                         {"on_motion", conflict->of_motion},
                         {"s", conflict->s},
                         {"bodies", conflict->bodies}};
-  json["advice"] = extras.advice ? advice_on_workcell(*extras.advice) : Json(nullptr);
+  json["advice"] = extras.advice ? advice_on_workcell(std::get<AdviceOnWorkcell>(*extras.advice))
+                                 : Json(nullptr);
   json["between_arms"] = nullptr;
   if (const auto& nearest = result.pair.nearest)
     json["between_arms"] = {{"clearance_mm", 1e3 * nearest->clearance},
@@ -141,7 +142,7 @@ std::string to_workcell_json(const Answer& result, const WorkcellExtras& extras)
                       {"move_pairs", result.pair.counters.move_pairs}};
   json["time_ms"] = time_json(result.time_ms);
   json["warnings"] = result.warnings;
-  return document_of(json);
+  return json;
 }
 
 }  // namespace swivel::io

@@ -46,10 +46,10 @@ std::string two_arms_csv(const Answer& result) {
   return text;
 }
 
-std::string to_workcell_motion_csv(const WorkcellMotion& motion,
+std::string to_workcell_motion_csv(const Motion& motion,
                                    const std::array<JointNames, 2>& joint_names) {
-  std::string text =
-      header_line(workcell_motion_header(arms_of_workcell(motion.names, joint_names)));
+  std::string text = header_line(workcell_motion_header(
+      arms_of_workcell({motion.arms[0].name, motion.arms[1].name}, joint_names)));
   const auto &first = motion.arms[0].rows, &second = motion.arms[1].rows;
   for (std::size_t k = 0; k < first.size(); ++k) {
     text += csv_number(first[k].t) + ',' + fields_of({&first[k].row, &second[k].row});
@@ -60,8 +60,7 @@ std::string to_workcell_motion_csv(const WorkcellMotion& motion,
   return text;
 }
 
-std::string workcell_motion_text(const WorkcellMotion& motion,
-                                 const std::array<JointNames, 2>& joint_names,
+std::string workcell_motion_text(const Motion& motion, const std::array<JointNames, 2>& joint_names,
                                  const std::string& frame_id, const std::filesystem::path& file) {
   require_motion_format(file);
   const std::string format = file.extension().string();

@@ -264,7 +264,7 @@ namespace {
 
 /// Says what is wrong with the events of a timed job, if anything is.
 std::optional<std::string> fault_of_events(const Problem& job, const std::vector<StrokeRun>& order,
-                                           const JobMotion& motion) {
+                                           const ArmMotion& motion) {
   std::vector<ProcessEvent> expected;
   std::size_t next = 0;
   for (std::size_t k = 0; k < order.size(); ++k) {
@@ -294,7 +294,7 @@ std::optional<std::string> fault_of_events(const Problem& job, const std::vector
 }  // namespace
 
 JobCheckResult check_job_motion(const PreparedRobot& robot, const Problem& given,
-                                const std::vector<StrokeRun>& order, const JobMotion& motion,
+                                const std::vector<StrokeRun>& order, const ArmMotion& motion,
                                 const CheckOptions& options) {
   validate(given);
   robot.require_prepared_for(problem_of_run(given, {0, false}));
@@ -307,7 +307,7 @@ JobCheckResult check_job_motion(const PreparedRobot& robot, const Problem& given
   for (std::size_t k = 0; k < motion.rows.size(); ++k) {
     const std::size_t part = motion.part[k];
     if (part >= count || (k > 0 && part < motion.part[k - 1]))
-      throw InvalidArgument("JobMotion: part: allowed are indices of parts that ascend");
+      throw InvalidArgument("ArmMotion: part: allowed are indices of parts that ascend");
     if (timed[part].empty() && k > 0) timed[part].push_back(motion.rows[k - 1]);
     timed[part].push_back(motion.rows[k]);
   }
@@ -367,7 +367,7 @@ bool begins_at_last_waypoint(const PreparedRobot& robot, const Problem& job, std
 
 std::vector<StrokeRun> runs_of_motion(const PreparedRobot& robot, const Problem& job,
                                       const std::vector<std::size_t>& strokes,
-                                      const JobMotion& motion) {
+                                      const ArmMotion& motion) {
   std::vector<StrokeRun> runs;
   for (std::size_t k = 0; k < strokes.size(); ++k) {
     const std::size_t part = job.arm().home ? 2 * k + 1 : 2 * k;

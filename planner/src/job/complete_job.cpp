@@ -33,7 +33,7 @@ struct Range {
 };
 
 /// Returns the rows of each part of a motion. A part begins with the last row of the one before.
-std::vector<Range> ranges_of(const JobMotion& motion) {
+std::vector<Range> ranges_of(const ArmMotion& motion) {
   std::vector<Range> ranges;
   for (std::size_t k = 0; k < motion.rows.size();) {
     const std::size_t begin = k > 0 ? k - 1 : 0;
@@ -126,8 +126,8 @@ std::vector<Part> complete_parts(const PreparedRobot& robot, const Problem& job,
   return parts;
 }
 
-JobMotion complete_job_motion(const PreparedRobot& robot, const Problem& job,
-                              const std::vector<StrokeRun>& order, JobMotion motion,
+ArmMotion complete_job_motion(const PreparedRobot& robot, const Problem& job,
+                              const std::vector<StrokeRun>& order, ArmMotion motion,
                               const Stated& stated, const Budget& budget) {
   const std::vector<Range> ranges = ranges_of(motion);
   const auto rows_of = [&](const Range& range) {
@@ -173,7 +173,7 @@ JobMotion complete_job_motion(const PreparedRobot& robot, const Problem& job,
 }
 
 std::vector<Part> parts_of_motion(const PreparedRobot& robot, const Problem& job,
-                                  const std::vector<StrokeRun>& order, const JobMotion& motion,
+                                  const std::vector<StrokeRun>& order, const ArmMotion& motion,
                                   const Budget& budget) {
   const Problem completed = with_motion_defaults(job);
   std::vector<Part> parts;

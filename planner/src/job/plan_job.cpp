@@ -34,10 +34,10 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/graph/search/job_search.hpp"
 #include "swivel/planner/job/check_job.hpp"
-#include "swivel/planner/job/job_view.hpp"
 #include "swivel/planner/job/time_job.hpp"
 #include "swivel/planner/plan/plan_view.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/plan/problem_view.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "validity/collision_validity.hpp"
 #include "validity/hooked_validity.hpp"
@@ -648,7 +648,7 @@ class OrderSearch {
  public:
   /// Keeps the plan of the best job for `view`, unless that is null.
   OrderSearch(const PreparedRobot& robot, const Problem& job, const PlanOptions& options,
-              const Budget& budget, bool one_branch, JobView* view)
+              const Budget& budget, bool one_branch, ProblemView* view)
       : robot_(robot),
         job_(job),
         options_(options),
@@ -741,7 +741,7 @@ class OrderSearch {
   const PlanOptions& options_;
   const Budget& budget_;
   bool one_branch_;
-  JobView* view_;
+  ProblemView* view_;
   std::shared_ptr<JobRuns> runs_;
   OrderCosts costs_;
   std::shared_ptr<JobPlan> best_;
@@ -753,7 +753,7 @@ class OrderSearch {
 };
 
 Answer plan_in_order(const PreparedRobot& robot, const Problem& job, const PlanOptions& options,
-                     const Budget& budget, JobView* view, bool one_branch = false) {
+                     const Budget& budget, ProblemView* view, bool one_branch = false) {
   return OrderSearch(robot, job, options, budget, one_branch, view).plan();
 }
 
@@ -766,11 +766,11 @@ bool any_changes_branch(const Answer& job) {
 /// Plans a job of which motions are to be made: the cheapest, or the cheapest whose runs do not
 /// change branch if the cheapest does and there is one.
 Answer plan_executable(const PreparedRobot& robot, const Problem& job, const PlanOptions& options,
-                       const Budget& budget, JobView* view) {
+                       const Budget& budget, ProblemView* view) {
   Answer found = plan_in_order(robot, job, options, budget, view);
   if (found.arm().parts.empty() || !robot.arm_class().srs || !any_changes_branch(found))
     return found;
-  JobView other_view;
+  ProblemView other_view;
   Answer other =
       plan_in_order(robot, job, options, budget, view == nullptr ? nullptr : &other_view, true);
   if (other.arm().parts.empty()) return found;
@@ -785,13 +785,13 @@ Answer plan_executable(const PreparedRobot& robot, const Problem& job, const Pla
 }  // namespace
 
 Answer plan_job(const PreparedRobot& robot, const Problem& job, const PlanOptions& options,
-                JobView* view) {
+                ProblemView* view) {
   validate(job);
   require_supported(options, "jobs");
   robot.require_prepared_for(problem_of_run(job, {0, false}));
   const Budget budget = options.budget();
   return plan_with_lift_offs(robot, job, options, budget, view,
-                             [&](const Problem& one, JobView* its_view) {
+                             [&](const Problem& one, ProblemView* its_view) {
                                return plan_in_order(robot, one, options, budget, its_view);
                              });
 }
@@ -802,38 +802,38 @@ Answer plan_job(const Problem& job, const PlanOptions& options) {
   return plan_job(PreparedRobot(problem_of_run(job, {0, false})), job, options);
 }
 
-JobMotionPlan plan_job_motion(const PreparedRobot& robot, const Problem& job,
-                              const PlanOptions& options, const JobTimingOptions& timing,
-                              JobView* view) {
+Answer plan_job_motion(const PreparedRobot& robot, const Problem& job, const PlanOptions& options,
+                       const JobTimingOptions& timing, ProblemView* view) {
   validate(job);
   require_supported(options, "jobs");
   require_speeds(job, timing);
   const Problem completed = with_motion_defaults(job);
   robot.require_prepared_for(problem_of_run(completed, {0, false}));
   const Budget budget = options.budget();
-  JobMotionPlan plan;
-  plan.result = plan_with_lift_offs(robot, completed, options, budget, view,
-                                    [&](const Problem& one, JobView* its_view) {
-                                      return plan_executable(robot, one, options, budget, its_view);
-                                    });
-  if (plan.result.arm().parts.empty()) return plan;
-  const Problem executed = executed_problem(completed, plan.result);
+  Answer answer = plan_with_lift_offs(
+      robot, completed, options, budget, view, [&](const Problem& one, ProblemView* its_view) {
+        return plan_executable(robot, one, options, budget, its_view);
+      });
+  answer.timing = {
+      .speed = timing.speed.value_or(0), .turn_speed = timing.turn_speed, .rate = timing.rate};
+  if (!answer.has_rows()) return answer;
+  const Problem executed = executed_problem(completed, answer);
   try {
     Stopwatch watch;
-    plan.timing = time_job(robot, executed, plan.result.arm().parts, timing, budget);
-    plan.result.time_ms["time"] = watch.lap();
-    if (options.check && plan.timing->motion) {
+    answer.motion = time_job(robot, executed, answer.arm().parts, timing, budget);
+    answer.time_ms["time"] = watch.lap();
+    if (const Motion* const motion = answer.timed(); options.check && motion != nullptr) {
       std::vector<StrokeRun> order;
-      for (const RunAnswer& run : plan.result.arm().runs) order.push_back(run.run);
-      require_passed(check_job_motion(robot, executed, order, *plan.timing->motion,
+      for (const RunAnswer& run : answer.arm().runs) order.push_back(run.run);
+      require_passed(check_job_motion(robot, executed, order, motion->arms.front(),
                                       {.margins = false, .budget = budget, .speed = timing.speed}));
-      plan.result.time_ms["check motion"] = watch.lap();
+      answer.time_ms["check motion"] = watch.lap();
     }
   } catch (const Stopped&) {
-    plan.timing.reset();
-    plan.stopped = true;
+    answer.motion.reset();
+    answer.stopped = true;
   }
-  return plan;
+  return answer;
 }
 
 }  // namespace swivel

@@ -33,8 +33,8 @@ struct CutStroke {
 class LiftPlan {
  public:
   LiftPlan(const PreparedRobot& robot, const Problem& job, const PlanOptions& options,
-           const Budget& budget, JobView* view,
-           const std::function<Answer(const Problem&, JobView*)>& plan)
+           const Budget& budget, ProblemView* view,
+           const std::function<Answer(const Problem&, ProblemView*)>& plan)
       : robot_(robot), job_(job), options_(options), budget_(budget), view_(view), plan_(plan) {}
 
   Answer run() {
@@ -105,7 +105,7 @@ class LiftPlan {
   Answer evaluate() {
     const std::vector<LiftOff> places = lift_offs();
     const auto job = std::make_shared<Problem>(with_lift_offs(job_, places));
-    JobView view;
+    ProblemView view;
     Answer found = plan_(*job, view_ == nullptr ? nullptr : &view);
     add_counters(found.arm().counters, counters_);
     const bool better =
@@ -258,8 +258,8 @@ class LiftPlan {
   const Problem& job_;
   const PlanOptions& options_;
   const Budget& budget_;
-  JobView* view_;
-  const std::function<Answer(const Problem&, JobView*)>& plan_;
+  ProblemView* view_;
+  const std::function<Answer(const Problem&, ProblemView*)>& plan_;
   std::shared_ptr<Problem> uncut_;
   std::vector<CutStroke> strokes_;
   std::optional<Answer> best_;
@@ -270,8 +270,8 @@ class LiftPlan {
 }  // namespace
 
 Answer plan_with_lift_offs(const PreparedRobot& robot, const Problem& job,
-                           const PlanOptions& options, const Budget& budget, JobView* view,
-                           const std::function<Answer(const Problem&, JobView*)>& plan) {
+                           const PlanOptions& options, const Budget& budget, ProblemView* view,
+                           const std::function<Answer(const Problem&, ProblemView*)>& plan) {
   if (!job.arm().lift) return plan(job, view);
   return LiftPlan(robot, job, options, budget, view, plan).run();
 }

@@ -5,8 +5,8 @@
 #include "swivel/core/answer/answer.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/problem/problem.hpp"
-#include "swivel/planner/job/job_view.hpp"
 #include "swivel/planner/plan/plan_options.hpp"
+#include "swivel/planner/plan/problem_view.hpp"
 
 namespace swivel {
 
@@ -17,7 +17,7 @@ class PreparedRobot;
 /// job without strokes to be cut, and a view to fill or null.
 [[nodiscard]] Answer plan_with_lift_offs(
     const PreparedRobot& robot, const Problem& job, const PlanOptions& options,
-    const Budget& budget, JobView* view,
-    const std::function<Answer(const Problem&, JobView*)>& plan);
+    const Budget& budget, ProblemView* view,
+    const std::function<Answer(const Problem&, ProblemView*)>& plan);
 
 }  // namespace swivel

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "swivel/core/motion/job_motion.hpp"
-#include "swivel/core/motion/timed_path.hpp"
+#include "swivel/core/answer/motion.hpp"
+#include "swivel/core/answer/timed_path.hpp"
 #include "swivel/core/problem/problem.hpp"
 
 namespace swivel {

@@ -43,8 +43,8 @@ class JobTimer {
         budget_(budget),
         rates_(joint_rates(chain_, job.arm().transition_limits, job.source)) {}
 
-  JobTimingResult run() {
-    JobTimingResult result;
+  MotionTiming run() {
+    MotionTiming result;
     motion_.rate = options_.rate;
     motion_.roll = chain_.roll;
     for (const JointRates::Assumed& assumed : rates_.assumed)
@@ -58,7 +58,10 @@ class JobTimer {
       return result;
     }
     motion_.duration = motion_.rows.back().t;
-    result.motion = std::move(motion_);
+    Motion& motion = result.motion.emplace();
+    motion.rate = motion_.rate;
+    motion.duration = motion_.duration;
+    motion.arms.push_back(std::move(motion_));
     return result;
   }
 
@@ -146,7 +149,7 @@ class JobTimer {
   const JobTimingOptions& options_;
   const Budget& budget_;
   JointRates rates_;
-  JobMotion motion_;
+  ArmMotion motion_;
 };
 
 }  // namespace
@@ -161,9 +164,9 @@ void require_speeds(const Problem& job, const JobTimingOptions& options) {
                      *options.speed, "speed");
 }
 
-JobTimingResult time_job(const PreparedRobot& robot, const Problem& job,
-                         const std::vector<Part>& parts, const JobTimingOptions& options,
-                         const Budget& budget) {
+MotionTiming time_job(const PreparedRobot& robot, const Problem& job,
+                      const std::vector<Part>& parts, const JobTimingOptions& options,
+                      const Budget& budget) {
   const TraceSpan span("time job");
   validate(job);
   robot.require_prepared_for(problem_of_run(job, {0, false}));

@@ -333,6 +333,33 @@ void require_tool_speed_of(const PathProblem& problem, double speed) {
 
 }  // namespace
 
+Answer answer_of(MotionPlan plan, const std::optional<TimingOptions>& timing) {
+  Answer answer = answer_of(std::move(plan.result));
+  answer.timing = timing;
+  answer.stopped = plan.stopped;
+  if (plan.refinement) {
+    RefinedArms& refined = answer.refinement.emplace();
+    refined.turns = 1;
+    refined.cost_before = plan.refinement->cost_before;
+    refined.cost = plan.refinement->cost;
+    refined.arms.push_back(*std::move(plan.refinement));
+    answer.refined = refined.any();
+  }
+  if (!plan.motion) return answer;
+  MotionTiming& timed = answer.motion.emplace();
+  timed.failure = std::move(plan.motion->failure);
+  timed.time_ms = plan.motion->time_ms;
+  timed.check_ms = plan.motion->check_ms;
+  if (!plan.motion->motion) return answer;
+  Motion& motion = timed.motion.emplace();
+  ArmMotion& arm = motion.arms.emplace_back();
+  static_cast<TimedPath&>(arm) = *std::move(plan.motion->motion);
+  motion.rate = arm.rate;
+  motion.duration = arm.duration;
+  motion.ideal = arm.ideal;
+  return answer;
+}
+
 MotionPlan plan_motion(Planner& planner, const PlanOptions& options, bool refined,
                        const std::optional<TimingOptions>& timing) {
   if (timing) require_tool_speed_of(planner.problem(), timing->speed);

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "swivel/collision/world/world.hpp"
+#include "swivel/core/answer/timed_path.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/motion/path_motion.hpp"
-#include "swivel/core/motion/timed_path.hpp"
 #include "swivel/core/problem/path_problem.hpp"
 #include "swivel/core/problem/tool_path.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"

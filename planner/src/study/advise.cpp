@@ -23,7 +23,7 @@ using Outcome = Advice::Outcome;
 
 class Adviser {
  public:
-  Adviser(const Planner& planner, const PlanResult& result, const PlanOptions& options)
+  Adviser(const Planner& planner, const RunAnswer& result, const PlanOptions& options)
       : problem_(planner.problem()), result_(result), options_(options), trial_(planner.clone()) {
     constexpr double kSeconds = 1;
     end_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(
@@ -381,7 +381,7 @@ class Adviser {
   }
 
   const PathProblem& problem_;
-  const PlanResult& result_;
+  const RunAnswer& result_;
   PlanOptions options_;
   Planner trial_;
   Clock::time_point end_, trial_end_;
@@ -392,7 +392,7 @@ class Adviser {
 
 }  // namespace
 
-std::vector<Advice> advise(const Planner& planner, const PlanResult& result, PlanOptions options) {
+std::vector<Advice> advise(const Planner& planner, const RunAnswer& result, PlanOptions options) {
   return Adviser(planner, result, options).run();
 }
 

@@ -26,9 +26,9 @@
 #include "swivel/graph/search/pair_search.hpp"
 #include "swivel/parallel/executor.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/plan/problem_view.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/workcell/check_workcell.hpp"
-#include "swivel/planner/workcell/workcell_view.hpp"
 #include "validity/collision_validity.hpp"
 #include "workcell/arm_in_cell.hpp"
 #include "workcell/between_arms.hpp"
@@ -77,7 +77,7 @@ class WorkcellPlan {
  public:
   /// `view`: filled with what was found out, or null.
   WorkcellPlan(const PreparedWorkcell& prepared, const PlanOptions& options, const Budget& budget,
-               WorkcellView* view)
+               ProblemView* view)
       : prepared_(prepared),
         options_(options),
         budget_(budget),
@@ -359,7 +359,7 @@ class WorkcellPlan {
     for (const auto& arm : *owner) {
       arm->validity.reset();
       arm->cost_to_go.reset();
-      view_->arms.push_back(arm->view());
+      view_->runs.push_back(arm->view());
     }
     view_->owner = owner;
   }
@@ -368,7 +368,7 @@ class WorkcellPlan {
   const PlanOptions& options_;
   Budget budget_;
   Executor executor_;
-  WorkcellView* view_;
+  ProblemView* view_;
   PlannedArms arms_;
   std::array<std::string, 2> turns_;  // turns_note() of each arm's first path that did not fit
   Answer result_;
@@ -424,7 +424,7 @@ void measure_between_arms(const PreparedWorkcell& prepared, const Budget& budget
 }
 
 Answer plan_workcell(const PreparedWorkcell& prepared, const PlanOptions& options,
-                     WorkcellView* view) {
+                     ProblemView* view) {
   require_supported(options, "workcells");
   if (view) *view = {};
   return WorkcellPlan(prepared, options, options.budget(), view).plan(true);

@@ -15,20 +15,20 @@ namespace {
 
 using RowsOfBoth = std::array<std::vector<TrajectoryRow>, 2>;
 
-/// What follows the plan of a workcell: refinement, motion, proof and measures.
+/// What follows the plan of two arms: refinement, motion, proof and measures.
 class AfterPlan {
  public:
   AfterPlan(const PreparedWorkcell& prepared, const PlanOptions& options, const Budget& budget,
-            WorkcellMotionPlan& plan)
+            Answer& answer)
       : prepared_(prepared),
         options_(options),
         budget_(budget),
-        plan_(plan),
-        planned_(rows_of_arms(plan.result)) {}
+        answer_(answer),
+        planned_(rows_of_arms(answer)) {}
 
-  void run(bool refined, const std::optional<TimingOptions>& timing) {
+  void run(bool refined) {
     try {
-      refine_and_time(refined, timing);
+      refine_and_time(refined);
       if (options_.check) prove();
     } catch (const Stopped&) {
       stop(refined);
@@ -37,81 +37,78 @@ class AfterPlan {
     take();
     try {
       Stopwatch watch;
-      measure_workcell(prepared_, options_.evidence, budget_, plan_.result);
-      plan_.result.time_ms["report"] += watch.lap();
+      measure_workcell(prepared_, options_.evidence, budget_, answer_);
+      answer_.time_ms["report"] += watch.lap();
     } catch (const Stopped&) {
     }
   }
 
  private:
-  void refine_and_time(bool refined, const std::optional<TimingOptions>& timing) {
-    auto& time_ms = plan_.result.time_ms;
+  void refine_and_time(bool refined) {
+    auto& time_ms = answer_.time_ms;
+    const std::optional<TimingOptions>& timing = answer_.timing;
     if (refined && timing) {
       RefinedWorkcellMotion found = refine_until_timed(prepared_, planned_, *timing, budget_);
-      plan_.refinement = std::move(found.refinement);
-      plan_.timing = std::move(found.timing);
+      answer_.refinement = std::move(found.refinement);
+      answer_.motion = std::move(found.timing);
       time_ms["refine"] += found.refine_ms;
     } else if (refined) {
       Stopwatch watch;
-      plan_.refinement = refine_workcell(prepared_, planned_, budget_);
+      answer_.refinement = refine_workcell(prepared_, planned_, budget_);
       time_ms["refine"] += watch.lap();
     } else {
-      plan_.timing = time_workcell(prepared_, planned_, *timing, budget_);
+      answer_.motion = time_workcell(prepared_, planned_, *timing, budget_);
     }
-    if (timing) time_ms["time"] += plan_.timing->time_ms + plan_.timing->check_ms;
+    if (timing) time_ms["time"] += answer_.motion->time_ms + answer_.motion->check_ms;
   }
-  [[nodiscard]] RowsOfBoth refined_rows() const {
-    return {plan_.refinement->arms[0].rows, plan_.refinement->arms[1].rows};
-  }
-  [[nodiscard]] bool is_refined() const {
-    return plan_.refinement &&
-           (plan_.refinement->arms[0].refined || plan_.refinement->arms[1].refined);
-  }
+  [[nodiscard]] bool is_refined() const { return answer_.refinement && answer_.refinement->any(); }
 
   /// Proves the refined rows and the motion; the planned rows are proved already.
   void prove() {
     Stopwatch watch;
     const CheckOptions options{.margins = false, .budget = budget_};
-    if (is_refined()) require_passed(check_workcell(prepared_, refined_rows(), options));
-    if (plan_.timing && plan_.timing->motion) {
-      const auto& arms = plan_.timing->motion->arms;
-      require_passed(check_workcell_motion(prepared_, {arms[0].rows, arms[1].rows}, options));
+    if (is_refined()) {
+      const auto& arms = answer_.refinement->arms;
+      require_passed(check_workcell(prepared_, {arms[0].rows, arms[1].rows}, options));
     }
-    plan_.result.time_ms["check"] += watch.lap();
+    if (const Motion* const motion = answer_.timed())
+      require_passed(
+          check_workcell_motion(prepared_, {motion->arms[0].rows, motion->arms[1].rows}, options));
+    answer_.time_ms["check"] += watch.lap();
   }
 
   /// Notes that time ran out: the planned rows stay, without refinement and motion.
   void stop(bool refined) {
-    plan_.stopped = true;
-    plan_.timing.reset();
+    answer_.stopped = true;
+    answer_.motion.reset();
     if (!refined) return;
-    RefinedWorkcell& none = plan_.refinement.emplace();
+    RefinedArms& none = answer_.refinement.emplace();
     for (std::size_t k = 0; k < 2; ++k) {
-      const double cost = plan_.result.arms[k].cost();
-      none.arms[k] = {.rows = planned_[k], .reason = "stopped", .cost_before = cost, .cost = cost};
+      const double cost = answer_.arms[k].cost();
+      none.arms.push_back(
+          {.rows = planned_[k], .reason = "stopped", .cost_before = cost, .cost = cost});
     }
-    none.cost_before = none.cost = plan_.result.cost;
+    none.cost_before = none.cost = answer_.cost;
   }
 
-  /// Replaces trajectories and costs of the result by the refined ones, where arms were refined.
+  /// Replaces rows and costs by the refined ones, where arms were refined.
   void take() {
-    Answer& result = plan_.result;
     for (std::size_t k = 0; k < 2; ++k) {
-      const Refined& arm = plan_.refinement->arms[k];
+      const Refined& arm = answer_.refinement->arms[k];
       if (!arm.refined) continue;
-      Part& part = result.arms[k].parts.front();
+      Part& part = answer_.arms[k].parts.front();
       part.rows = arm.rows;
       part.cost = arm.cost;
     }
     if (!is_refined()) return;
-    result.refined = true;
-    result.cost = plan_.refinement->cost;
+    answer_.refined = true;
+    answer_.cost = answer_.refinement->cost;
   }
 
   const PreparedWorkcell& prepared_;
   const PlanOptions& options_;
   const Budget& budget_;
-  WorkcellMotionPlan& plan_;
+  Answer& answer_;
   const RowsOfBoth planned_;
 };
 
@@ -135,10 +132,9 @@ RefinedWorkcellMotion refine_until_timed(const PreparedWorkcell& prepared, const
   }
 }
 
-WorkcellMotionPlan plan_workcell_motion(const PreparedWorkcell& prepared,
-                                        const PlanOptions& options, bool refined,
-                                        const std::optional<TimingOptions>& timing,
-                                        WorkcellView* view) {
+Answer plan_workcell_motion(const PreparedWorkcell& prepared, const PlanOptions& options,
+                            bool refined, const std::optional<TimingOptions>& timing,
+                            ProblemView* view) {
   if (refined) require_refinable(prepared);
   if (timing) {
     require_positive(*timing);
@@ -149,11 +145,11 @@ WorkcellMotionPlan plan_workcell_motion(const PreparedWorkcell& prepared,
   // The refined rows are measured later, in place of the planned ones.
   PlanOptions first = options;
   if (refined) first.evidence = {};
-  WorkcellMotionPlan plan;
-  plan.result = plan_workcell(prepared, first, view);
-  if (plan.result.status == PlanStatus::kSolved && (refined || timing))
-    AfterPlan(prepared, options, budget, plan).run(refined, timing);
-  return plan;
+  Answer answer = plan_workcell(prepared, first, view);
+  answer.timing = timing;
+  if (answer.has_rows() && (refined || timing))
+    AfterPlan(prepared, options, budget, answer).run(refined);
+  return answer;
 }
 
 }  // namespace swivel

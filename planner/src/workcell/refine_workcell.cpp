@@ -70,14 +70,15 @@ void require_refinable(const PreparedWorkcell& prepared) {
                      "arms that are planned");
 }
 
-RefinedWorkcell refine_workcell(const PreparedWorkcell& prepared,
-                                const std::array<std::vector<TrajectoryRow>, 2>& rows,
-                                const Budget& budget, double extra_clearance) {
+RefinedArms refine_workcell(const PreparedWorkcell& prepared,
+                            const std::array<std::vector<TrajectoryRow>, 2>& rows,
+                            const Budget& budget, double extra_clearance) {
   const TraceSpan span("refine workcell");
   constexpr int kMostRepeats = 4;
   constexpr double kWorthIt = 1 - 1e-3;
   require_refinable(prepared);
-  RefinedWorkcell result;
+  RefinedArms result;
+  result.arms.resize(2);
   for (std::size_t k = 0; k < 2; ++k) result.arms[k].rows = rows[k];
   for (int turn = 0; turn < kMostRepeats; ++turn) {
     const double before = result.cost;

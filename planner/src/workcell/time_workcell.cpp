@@ -113,7 +113,7 @@ class WorkcellTimer {
     }
   }
 
-  WorkcellTiming run() {
+  MotionTiming run() {
     constexpr int kMost = 80;
     std::optional<TriedFault> tried;
     for (int tries = 0; tries < kMost; ++tries) {
@@ -291,11 +291,12 @@ class WorkcellTimer {
   }
 
   void finish() {
-    WorkcellMotion& motion = result_.motion.emplace();
+    Motion& motion = result_.motion.emplace();
     for (std::size_t k = 0; k < 2; ++k) {
-      motion.names[k] = prepared_.name(k);
-      motion.arms[k] = std::move(samples_[k]);
-      auto& warnings = motion.arms[k].warnings;
+      ArmMotion& arm = motion.arms.emplace_back();
+      static_cast<TimedPath&>(arm) = std::move(samples_[k]);
+      arm.name = prepared_.name(k);
+      auto& warnings = arm.warnings;
       warnings.insert(warnings.begin(), arms_[k]->lowered.begin(), arms_[k]->lowered.end());
       if (!arms_[k]->between.empty())
         warnings.push_back("the motion would be at fault between layers: it is led through " +
@@ -307,7 +308,7 @@ class WorkcellTimer {
     motion.blended = blended_;
     if (prepared_.follower() >= 0) measure_follower(motion);
   }
-  void measure_follower(WorkcellMotion& motion) const {
+  void measure_follower(Motion& motion) const {
     const auto follower = static_cast<std::size_t>(prepared_.follower());
     motion.follower = follower;
     const FollowerMeter meter(prepared_, budget_);
@@ -331,14 +332,14 @@ class WorkcellTimer {
   std::array<bool, 2> all_rows_{};
   int blended_ = 0;
   std::vector<TimedPath> samples_;
-  WorkcellTiming result_;
+  MotionTiming result_;
 };
 
 }  // namespace
 
-WorkcellTiming time_workcell(const PreparedWorkcell& prepared,
-                             const std::array<std::vector<TrajectoryRow>, 2>& rows,
-                             const TimingOptions& options, const Budget& budget) {
+MotionTiming time_workcell(const PreparedWorkcell& prepared,
+                           const std::array<std::vector<TrajectoryRow>, 2>& rows,
+                           const TimingOptions& options, const Budget& budget) {
   const TraceSpan span("time workcell");
   require_positive(options);
   if (!options.speeds.empty())

@@ -91,8 +91,8 @@ std::string words_of(const InfeasibilityCertificate& certificate) {
 /// Returns the certificate that a workcell has no plan. Throws ValueError for another plan.
 WorkcellCertificate proof_of(const WorkcellPlan& plan, const Workcell* given,
                              std::optional<double> timeout) {
-  if (plan.plan->result.status != PlanStatus::kInfeasible)
-    throw py::value_error(std::string("the plan is '") + to_string(plan.plan->result.status) +
+  if (plan.plan->status != PlanStatus::kInfeasible)
+    throw py::value_error(std::string("the plan is '") + to_string(plan.plan->status) +
                           "': allowed is one that is infeasible");
   if (plan.refined || plan.timing)
     throw py::value_error(

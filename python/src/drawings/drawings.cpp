@@ -10,9 +10,9 @@
 #include "swivel/io/robots/urdf_shapes.hpp"
 #include "swivel/planner/plan/plan_view.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/plan/problem_view.hpp"
 #include "swivel/planner/refine/motion.hpp"
 #include "swivel/planner/workcell/time_workcell.hpp"
-#include "swivel/planner/workcell/workcell_view.hpp"
 #include "swivel/report/page.hpp"
 #include "swivel/report/workcell_page.hpp"
 #include "workcells/workcell_plan.hpp"
@@ -54,15 +54,13 @@ bool same_rows(const std::vector<TrajectoryRow>& a, const std::vector<Trajectory
 
 /// Returns the page of a plan that a planner has just found.
 std::string page_of(const PlanView& view, const LatticeMap& map, const MotionPlan& plan,
-                    const TimingOptions& timing, const Budget& budget) {
+                    const std::optional<TimingOptions>& timing, const Budget& budget) {
   PageMotion motion;
   if (plan.refinement && plan.refinement->refined) motion.refined = &plan.result.trajectory;
   if (plan.motion && plan.motion->motion) motion.motion = &*plan.motion->motion;
-  const io::PlanExtras extras{plan.refinement ? &*plan.refinement : nullptr,
-                              plan.motion ? &*plan.motion : nullptr, timing, nullptr};
   const io::VisualRobot visual = io::load_visuals(*view.problem.model);
-  return to_page(view, map, io::to_json(plan.result, extras), motion, budget,
-                 {"", answer_text(plan.result), visual.model.get(), visual.left_out});
+  return to_page(view, map, io::to_json(answer_of(plan, timing), one_path(view.problem)), motion,
+                 budget, {"", answer_text(plan.result), visual.model.get(), visual.left_out});
 }
 
 /// Plans again what a plan is of, and draws it. `full`: the clearance of every node is asked.
@@ -89,8 +87,7 @@ Drawing draw(const Plan& plan, const PathProblem* given, bool with_page, bool fu
     const PlanView view = planner.view();
     const LatticeMap map = make_map(view, full, budget);
     Drawing drawing{to_svg(map), ""};
-    if (with_page)
-      drawing.page = page_of(view, map, again, plan.timing.value_or(TimingOptions{}), budget);
+    if (with_page) drawing.page = page_of(view, map, again, plan.timing, budget);
     return drawing;
   });
 }
@@ -105,7 +102,7 @@ bool same_rows(const Answer& a, const Answer& b) {
 /// if another plan is found.
 std::string page_of(const WorkcellPlan& plan, const Workcell* given) {
   require_pages();
-  const Answer& known = plan.plan->result;
+  const Answer& known = *plan.plan;
   if ((known.status != PlanStatus::kSolved && known.status != PlanStatus::kInfeasible) ||
       plan.plan->stopped)
     throw py::value_error("the plan was stopped: allowed are plans that were not");
@@ -119,21 +116,14 @@ std::string page_of(const WorkcellPlan& plan, const Workcell* given) {
     const Budget budget({}, nullptr, stop);
     const swivel::Problem cell = completed(plan, given);
     const PreparedWorkcell prepared(cell, budget);
-    WorkcellView view;
-    const WorkcellMotionPlan again =
-        plan_workcell_motion(prepared, options, plan.refined, plan.timing, &view);
-    if (again.result.status != known.status || !same_rows(again.result, known))
+    ProblemView view;
+    const Answer again = plan_workcell_motion(prepared, options, plan.refined, plan.timing, &view);
+    if (again.status != known.status || !same_rows(again, known))
       throw py::value_error("workcell: has another answer than the plan: allowed is its own");
-    const auto& timing = again.timing;
-    const io::WorkcellExtras extras{
-        again.refinement ? &*again.refinement : nullptr, timing ? &*timing : nullptr,
-        plan.timing.value_or(TimingOptions{}), nullptr, again.stopped && plan.timing};
-    const swivel::WorkcellMotion* const motion =
-        timing && timing->motion ? &*timing->motion : nullptr;
     const io::VisualRobot visual = io::load_visuals(*cell.arms[0].model);
-    return to_workcell_page(
-        {prepared, cell, again.result, view, motion}, io::to_workcell_json(again.result, extras),
-        budget, {"", answer_text(again.result, cell), visual.model.get(), visual.left_out});
+    return to_workcell_page({prepared, cell, again, view, again.timed()}, io::to_json(again, cell),
+                            budget,
+                            {"", answer_text(again, cell), visual.model.get(), visual.left_out});
   });
 }
 

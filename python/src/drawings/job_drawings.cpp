@@ -11,9 +11,9 @@
 #include "swivel/io/io.hpp"
 #include "swivel/io/robots/urdf_shapes.hpp"
 #include "swivel/planner/certificate/infeasibility_certificate.hpp"
-#include "swivel/planner/job/job_view.hpp"
 #include "swivel/planner/job/plan_job.hpp"
 #include "swivel/planner/plan/plan_view.hpp"
+#include "swivel/planner/plan/problem_view.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/report/job_page.hpp"
 
@@ -47,19 +47,16 @@ bool same_parts(const Answer& a, const Answer& b) {
 }
 
 /// Plans a job again, and fills `view`. Throws ValueError if another answer is found, and Stopped.
-JobMotionPlan planned_again(const JobPlan& plan, const PreparedRobot& robot,
-                            const swivel::Problem& job, PlanOptions options, JobView& view) {
+Answer planned_again(const JobPlan& plan, const PreparedRobot& robot, const swivel::Problem& job,
+                     PlanOptions options, ProblemView& view) {
   for (const auto& [name, kind] : EnumNames<PlannerKind>::names)
     if (name == plan.result().planner) options.planner = kind;
   options.check = true;
-  JobMotionPlan again;
-  if (plan.timing)
-    again = plan_job_motion(robot, job, options, *plan.timing, &view);
-  else
-    again.result = swivel::plan_job(robot, job, options, &view);
-  const PlanStatus status = again.result.status;
-  if (status != PlanStatus::kSolved && status != PlanStatus::kInfeasible) throw Stopped();
-  if (!same_parts(again.result, plan.result()))
+  Answer again = plan.timing ? plan_job_motion(robot, job, options, *plan.timing, &view)
+                             : swivel::plan_job(robot, job, options, &view);
+  if (again.status != PlanStatus::kSolved && again.status != PlanStatus::kInfeasible)
+    throw Stopped();
+  if (!same_parts(again, plan.result()))
     throw py::value_error("job: has another answer than the plan: allowed is its own");
   return again;
 }
@@ -74,17 +71,16 @@ std::string page_of(const JobPlan& plan, const Job* given) {
     options.stop = stop;
     options.evidence = Evidence::all();
     const PreparedRobot robot(problem_of_run(job, {0, false}), budget);
-    JobView view;
-    const JobMotionPlan again = planned_again(plan, robot, job, options, view);
-    const auto& [result, timing, stopped] = again;
-    const swivel::Problem executed = executed_problem(job, result);
-    std::string text = answer_text(result, executed);
-    if (timing) text += swivel::job_motion_text(*timing, result.arm().parts, executed);
+    ProblemView view;
+    const Answer again = planned_again(plan, robot, job, options, view);
+    const swivel::Problem executed = executed_problem(job, again);
+    std::string text = answer_text(again, executed);
+    if (again.motion) text += swivel::job_motion_text(*again.motion, again.arm().parts, executed);
     const io::VisualRobot visual = io::load_visuals(*job.arm().model);
+    const swivel::Motion* const motion = again.timed();
     return to_job_page(
-        {robot, executed, result, view, timing && timing->motion ? &*timing->motion : nullptr},
-        io::to_job_json(result, executed, {timing ? &*timing : nullptr, stopped, nullptr}), budget,
-        {"", text, visual.model.get(), visual.left_out});
+        {robot, executed, again, view, motion != nullptr ? &motion->arms.front() : nullptr},
+        io::to_json(again, executed), budget, {"", text, visual.model.get(), visual.left_out});
   });
 }
 
@@ -114,7 +110,7 @@ InfeasibilityCertificate proof_of(const JobPlan& plan, const Job* given,
     options.stop = stop;
     options.timeout_s = timeout;
     const PreparedRobot robot(problem_of_run(job, {0, false}), budget);
-    JobView view;
+    ProblemView view;
     static_cast<void>(planned_again(plan, robot, job, options, view));
     InfeasibilityCertificate proof =
         prove_infeasible(view.runs.at(static_cast<std::size_t>(run - runs.begin())), budget);

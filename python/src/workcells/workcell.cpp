@@ -131,19 +131,20 @@ std::array<std::string, 2> names_of(const swivel::Problem& cell) {
 }
 
 Trajectory trajectory_of(const WorkcellPlan& plan, std::size_t arm) {
-  const ArmAnswer& result = plan.plan->result.arms[arm];
+  const ArmAnswer& result = plan.plan->arms[arm];
   return {std::shared_ptr<const std::vector<TrajectoryRow>>(plan.plan, &result.rows()),
           result.joint_names};
 }
 
 /// Returns the refinement and the motion of a plan, as far as these were asked for.
 WorkcellMotion motion_of(const WorkcellPlan& plan) {
-  const auto& [result, refinement, timing, stopped] = *plan.plan;
+  const Answer& result = *plan.plan;
   WorkcellMotion made{.names = names_of_arms(result),
                       .joint_names = joint_names_of_arms(result),
                       .frame = plan.frame};
-  if (timing) made.timing = std::shared_ptr<const WorkcellTiming>(plan.plan, &*timing);
-  if (refinement) made.refinement = std::shared_ptr<const RefinedWorkcell>(plan.plan, &*refinement);
+  if (result.motion) made.timing = std::shared_ptr<const MotionTiming>(plan.plan, &*result.motion);
+  if (result.refinement)
+    made.refinement = std::shared_ptr<const RefinedArms>(plan.plan, &*result.refinement);
   return made;
 }
 
@@ -152,13 +153,12 @@ WorkcellPlan plan(const WorkcellOrFile& of, PlanOptions options,
   const auto cell = to_core(of);
   WorkcellPlan made{
       .timing = timing, .refined = refine, .frame = cell->arms[0].base_link, .cell = cell};
-  made.plan =
-      std::make_shared<const WorkcellMotionPlan>(interruptible([&](const std::stop_token& stop) {
-        options.stop = stop;
-        const Budget budget({}, nullptr, stop);
-        return plan_workcell_motion(PreparedWorkcell(completed(made, nullptr), budget), options,
-                                    refine, timing);
-      }));
+  made.plan = std::make_shared<const Answer>(interruptible([&](const std::stop_token& stop) {
+    options.stop = stop;
+    const Budget budget({}, nullptr, stop);
+    return plan_workcell_motion(PreparedWorkcell(completed(made, nullptr), budget), options, refine,
+                                timing);
+  }));
   return made;
 }
 
@@ -197,8 +197,7 @@ WorkcellCheck check(const WorkcellOrFile& of, const Checked& rows) {
   if (const auto* const dict = std::get_if<py::dict>(&rows)) given = rows_of(*dict, names);
   if (const auto* const motion = std::get_if<WorkcellMotion>(&rows))
     for (std::size_t k = 0; k < 2; ++k) given.timed[k] = motion->motion().arms[k].rows;
-  if (const auto* made = std::get_if<WorkcellPlan>(&rows))
-    given.rows = rows_of_arms(made->plan->result);
+  if (const auto* made = std::get_if<WorkcellPlan>(&rows)) given.rows = rows_of_arms(*made->plan);
   const auto* file = std::get_if<std::filesystem::path>(&rows);
   return interruptible([&](const std::stop_token& stop) -> WorkcellCheck {
     CheckOptions options;
@@ -272,93 +271,81 @@ void bind_plan(py::module_& m) {
   py::class_<WorkcellPlan>(m, "WorkcellPlan",
                            "What was planned for two arms. None: does not apply.")
       .def(pickling<WorkcellPlan>())
-      .def_property_readonly("status", [](const WorkcellPlan& p) { return p.plan->result.status; })
+      .def_property_readonly("status", [](const WorkcellPlan& p) { return p.plan->status; })
       .def_property_readonly(
-          "solved",
-          [](const WorkcellPlan& p) { return p.plan->result.status == PlanStatus::kSolved; })
-      .def_property_readonly("names",
-                             [](const WorkcellPlan& p) { return names_of_arms(p.plan->result); })
+          "solved", [](const WorkcellPlan& p) { return p.plan->status == PlanStatus::kSolved; })
+      .def_property_readonly("names", [](const WorkcellPlan& p) { return names_of_arms(*p.plan); })
       .def_property_readonly(
           "given",
           [](const WorkcellPlan& p) -> std::optional<std::string> {
-            const Answer& result = p.plan->result;
+            const Answer& result = *p.plan;
             const auto given = result.given_arm();
             if (!given) return {};
             return result.arms[*given].name;
           },
           "Name of the arm whose motion was given.")
       .def_property_readonly(
-          "cost", [](const WorkcellPlan& p) { return p.plan->result.cost; },
-          "Of both paths together.")
+          "cost", [](const WorkcellPlan& p) { return p.plan->cost; }, "Of both paths together.")
       .def_property_readonly(
-          "bound", [](const WorkcellPlan& p) { return p.plan->result.bound; },
+          "bound", [](const WorkcellPlan& p) { return p.plan->bound; },
           "No two paths without conflict cost less; inf: there are none.")
       .def_property_readonly(
           "least_costs",
           [](const WorkcellPlan& p) {
-            const auto& arms = p.plan->result.arms;
+            const auto& arms = p.plan->arms;
             return std::array{arms[0].run().least_cost, arms[1].run().least_cost};
           },
           "Of the arms by themselves; inf: it has no path.")
       .def_property_readonly(
-          "decided_by",
-          [](const WorkcellPlan& p) { return to_string(p.plan->result.pair.decided_by); },
+          "decided_by", [](const WorkcellPlan& p) { return to_string(p.plan->pair.decided_by); },
           "'arms alone', 'regions', 'pairs of nodes', or 'none' where time was up.")
       .def_property_readonly(
           "trajectories",
           [](const WorkcellPlan& p) {
             py::dict all;
-            if (p.plan->result.has_rows())
+            if (p.plan->has_rows())
               for (std::size_t k = 0; k < 2; ++k)
-                all[p.plan->result.arms[k].name.c_str()] = py::cast(trajectory_of(p, k));
+                all[p.plan->arms[k].name.c_str()] = py::cast(trajectory_of(p, k));
             return all;
           },
           "Name of the arm -> Trajectory; rows of one number are simultaneous. Empty: no plan.")
       .def_property_readonly(
           "conflict",
           [](const WorkcellPlan& p) -> std::optional<std::array<std::string, 2>> {
-            if (!p.plan->result.pair.conflict) return {};
-            return p.plan->result.pair.conflict->bodies;
+            if (!p.plan->pair.conflict) return {};
+            return p.plan->pair.conflict->bodies;
           },
           "Two bodies that meet on the cheapest paths, where each arm has a path and both together "
           "have none.")
       .def(
           "diagnosis",
           [](const WorkcellPlan& p, const std::string& arm) -> std::optional<Diagnosis> {
-            const std::size_t k = number_of(names_of_arms(p.plan->result), arm);
-            return p.plan->result.arms[k].run().diagnosis;
+            const std::size_t k = number_of(names_of_arms(*p.plan), arm);
+            return p.plan->arms[k].run().diagnosis;
           },
           py::arg("arm"), "Why this arm has no path by itself.")
       .def_property_readonly(
           "clearance",
           [](const WorkcellPlan& p) -> std::optional<double> {
-            if (!p.plan->result.pair.nearest) return {};
-            return p.plan->result.pair.nearest->clearance;
+            if (!p.plan->pair.nearest) return {};
+            return p.plan->pair.nearest->clearance;
           },
           "Between bodies of both arms at rows, m, with evidence=True.")
       .def_property_readonly(
           "clearance_status",
-          [](const WorkcellPlan& p) { return to_string(p.plan->result.pair.nearest_status()); },
+          [](const WorkcellPlan& p) { return to_string(p.plan->pair.nearest_status()); },
           "'measured', 'none' (no pair is near) or 'not_measured' (not asked for, or time ran "
           "out).")
-      .def_property_readonly("time_ms",
-                             [](const WorkcellPlan& p) { return p.plan->result.time_ms; })
-      .def_property_readonly("warnings",
-                             [](const WorkcellPlan& p) { return p.plan->result.warnings; })
+      .def_property_readonly("time_ms", [](const WorkcellPlan& p) { return p.plan->time_ms; })
+      .def_property_readonly("warnings", [](const WorkcellPlan& p) { return p.plan->warnings; })
       .def(
-          "to_json",
-          [](const WorkcellPlan& p) {
-            const auto& [result, refinement, timing, stopped] = *p.plan;
-            return io::to_workcell_json(
-                result, {refinement ? &*refinement : nullptr, timing ? &*timing : nullptr,
-                         p.timing.value_or(TimingOptions{}), nullptr, stopped && p.timing});
-          },
+          "to_json", [](const WorkcellPlan& p) { return io::to_json(*p.plan, swivel::two_arms()); },
           "As `swivel plan --json` writes it.")
       .def(
           "save",
           [](const WorkcellPlan& p, const std::filesystem::path& file) {
-            if (!p.plan->result.has_rows()) throw py::value_error("there is no plan");
-            io::write_file(file, io::to_csv(p.plan->result, swivel::two_arms()));
+            if (!p.plan->has_rows()) throw py::value_error("there is no plan");
+            io::write_file(file, io::to_csv(*p.plan, swivel::two_arms()));
           },
           py::arg("file"), "The trajectories of both arms as CSV, docs/formats.md.")
       .def_property_readonly(
@@ -374,7 +361,7 @@ void bind_plan(py::module_& m) {
       .def_property_readonly(
           "not_executable",
           [](const WorkcellPlan& p) -> std::optional<std::string> {
-            const auto& timing = p.plan->timing;
+            const auto& timing = p.plan->motion;
             if (!timing && p.timing && p.plan->stopped) return "stopped";
             if (!timing || !timing->failure) return {};
             return timing->failure->reason;
@@ -386,11 +373,10 @@ void bind_plan(py::module_& m) {
           py::arg("file"),
           "The motion of both arms as .csv, .json or .yaml (JointTrajectory), or .mcap.")
       .def("__repr__", [](const WorkcellPlan& p) {
-        return !p.plan->result.has_rows()
-                   ? std::string("<WorkcellPlan ") + to_string(p.plan->result.status) + ">"
-                   : formatted("<WorkcellPlan %s: %zu rows, cost %.6g>",
-                               to_string(p.plan->result.status), p.plan->result.arm().rows().size(),
-                               p.plan->result.cost);
+        return !p.plan->has_rows()
+                   ? std::string("<WorkcellPlan ") + to_string(p.plan->status) + ">"
+                   : formatted("<WorkcellPlan %s: %zu rows, cost %.6g>", to_string(p.plan->status),
+                               p.plan->arm().rows().size(), p.plan->cost);
       });
 }
 
@@ -429,7 +415,7 @@ AdviceOnWorkcell advise(const WorkcellOrFile& of, const WorkcellPlan& plan, doub
     PlanOptions options;
     options.timeout_s = timeout;
     options.stop = stop;
-    return advise_workcell(*cell, plan.plan->result, options);
+    return advise_workcell(*cell, *plan.plan, options);
   });
 }
 

@@ -59,11 +59,10 @@ std::array<std::vector<TrajectoryRow>, 2> untimed_rows(const PreparedWorkcell& p
   }
 }
 std::array<std::vector<TrajectoryRow>, 2> untimed_rows(const WorkcellPlan& plan) {
-  std::array<std::vector<TrajectoryRow>, 2> rows;
-  rows = rows_of_arms(plan.plan->result);
+  std::array<std::vector<TrajectoryRow>, 2> rows = rows_of_arms(*plan.plan);
   if (rows[0].empty())
     throw py::value_error(std::string("the plan has no trajectories: ") +
-                          to_string(plan.plan->result.status));
+                          to_string(plan.plan->status));
   return rows;
 }
 std::array<std::vector<TrajectoryRow>, 2> untimed_rows(const py::dict& given,
@@ -96,11 +95,11 @@ WorkcellMotion time(const WorkcellOrFile& of, const WorkcellTrajectories& rows,
       made.joint_names[k] = prepared.robot(k).arm().chain.joint_names;
     if (refine) {
       RefinedWorkcellMotion found = refine_and_time_workcell(prepared, given, timing, budget);
-      made.refinement = std::make_shared<const RefinedWorkcell>(std::move(found.refinement));
-      made.timing = std::make_shared<const WorkcellTiming>(std::move(found.timing));
+      made.refinement = std::make_shared<const RefinedArms>(std::move(found.refinement));
+      made.timing = std::make_shared<const MotionTiming>(std::move(found.timing));
     } else {
       made.timing =
-          std::make_shared<const WorkcellTiming>(time_workcell(prepared, given, timing, budget));
+          std::make_shared<const MotionTiming>(time_workcell(prepared, given, timing, budget));
     }
     if (const auto& motion = made.timing->motion)
       require_passed(check_workcell_motion(prepared, {motion->arms[0].rows, motion->arms[1].rows},
@@ -111,14 +110,14 @@ WorkcellMotion time(const WorkcellOrFile& of, const WorkcellTrajectories& rows,
 
 std::string words_of(const WorkcellMotion& x) {
   if (!x.timing->motion) return "not executable: " + x.timing->failure->reason;
-  const swivel::WorkcellMotion& motion = *x.timing->motion;
+  const swivel::Motion& motion = *x.timing->motion;
   return formatted("%.3f s, %zu samples at %.6g Hz", motion.duration, motion.arms[0].rows.size(),
                    motion.rate);
 }
 
 }  // namespace
 
-const swivel::WorkcellMotion& WorkcellMotion::motion() const {
+const swivel::Motion& WorkcellMotion::motion() const {
   if (!timing)
     throw py::value_error("there is no motion: it was not asked for, or there is no plan");
   if (!timing->motion) throw py::value_error("not executable: " + timing->failure->reason);

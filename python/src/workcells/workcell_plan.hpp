@@ -18,7 +18,7 @@
 namespace swivel::python {
 
 struct WorkcellPlan {
-  std::shared_ptr<const WorkcellMotionPlan> plan;  // shared with trajectories
+  std::shared_ptr<const Answer> plan;  // shared with trajectories
   std::optional<TimingOptions> timing = {};
   bool refined = false;                              ///< a refinement was asked for
   std::string frame = {};                            ///< name of the base link
@@ -31,13 +31,13 @@ struct WorkcellPlan {
 
 /// The motion of both arms in time, or why there is none.
 struct WorkcellMotion {
-  std::shared_ptr<const WorkcellTiming> timing;            // shared with motions
-  std::shared_ptr<const RefinedWorkcell> refinement = {};  ///< null where it was not asked for
+  std::shared_ptr<const MotionTiming> timing;          // shared with motions
+  std::shared_ptr<const RefinedArms> refinement = {};  ///< null where it was not asked for
   std::array<std::string, 2> names = {};
   std::array<io::JointNames, 2> joint_names = {};
   std::string frame = {};  ///< name of the base link
   /// Returns the motion. Throws ValueError if there is none.
-  [[nodiscard]] const swivel::WorkcellMotion& motion() const;
+  [[nodiscard]] const swivel::Motion& motion() const;
   /// Returns the motion of each arm by its name; none where there is none.
   [[nodiscard]] py::dict motions() const;
   /// Returns the refinement of each arm by its name; none where it was not asked for.

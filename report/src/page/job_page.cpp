@@ -208,7 +208,7 @@ class JobPage {
   const Problem& job_;
   const Answer& result_;
   const std::vector<PlanView>& runs_;
-  const JobMotion* motion_;
+  const ArmMotion* motion_;
   const PreparedRobot& robot_;
   const Chain& chain_;
   const World& world_;

@@ -9,9 +9,9 @@
 
 #include "page/scene_json.hpp"
 #include "swivel/collision/world/world.hpp"
+#include "swivel/core/answer/timed_path.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/lattice/lattice.hpp"
-#include "swivel/core/motion/timed_path.hpp"
 #include "swivel/report/lattice_map.hpp"
 
 namespace swivel::detail {

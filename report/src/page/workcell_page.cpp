@@ -115,7 +115,7 @@ class WorkcellPage {
   [[nodiscard]] const std::string& maps() const { return maps_; }
 
  private:
-  [[nodiscard]] const PlanView& view(std::size_t arm) const { return planned_.view.arms[arm]; }
+  [[nodiscard]] const PlanView& view(std::size_t arm) const { return planned_.view.runs[arm]; }
   /// Returns true if an arm has a path: that of the answer, or where there is no plan its own.
   [[nodiscard]] bool has_path(std::size_t arm) const { return !planned_.view.alone[arm].empty(); }
 

@@ -320,15 +320,16 @@ TEST(LiftOffs, RingInTime) {
   job.arm().strokes.front().resolution.ds = 0.01;
   job.arm().strokes.front().resolution.dphi = 0.1;
   const PreparedRobot robot(problem_of_run(job, {0, false}));
-  const JobMotionPlan plan = plan_job_motion(robot, job, with_check(), {.speed = 0.05});
-  ASSERT_EQ(plan.result.arm().lift_offs.size(), 1u);
-  ASSERT_TRUE(plan.timing && plan.timing->motion);
-  const Problem executed = executed_problem(with_motion_defaults(job), plan.result);
+  const Answer plan = plan_job_motion(robot, job, with_check(), {.speed = 0.05});
+  ASSERT_EQ(plan.arm().lift_offs.size(), 1u);
+  ASSERT_TRUE(plan.timed());
+  const Problem executed = executed_problem(with_motion_defaults(job), plan);
   ASSERT_EQ(executed.arm().strokes.size(), 2u);
   EXPECT_EQ(executed.arm().strokes[1].name, "ring/2");
-  EXPECT_EQ(s_of_piece(executed.arm().strokes[1]), plan.result.arm().lift_offs[0].resumed);
+  EXPECT_EQ(s_of_piece(executed.arm().strokes[1]), plan.arm().lift_offs[0].resumed);
   EXPECT_TRUE(
-      check_job_motion(robot, executed, {{0, false}, {1, false}}, *plan.timing->motion).passed);
+      check_job_motion(robot, executed, {{0, false}, {1, false}}, plan.timed()->arms.front())
+          .passed);
 }
 
 TEST(LiftOffs, WhatIsRefused) {

@@ -22,9 +22,9 @@
 #include "swivel/io/io.hpp"
 #include "swivel/io/problems/problem.hpp"
 #include "swivel/planner/job/check_job.hpp"
-#include "swivel/planner/job/job_view.hpp"
 #include "swivel/planner/job/plan_job.hpp"
 #include "swivel/planner/job/time_job.hpp"
+#include "swivel/planner/plan/problem_view.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel {
@@ -180,14 +180,14 @@ void expect_shows(const PlanView& view, const Part& part, const std::string& wha
 }
 
 TEST(PlanJob, ShowsWhatItFoundOutAboutRuns) {
-  Random random(seed("JobView"));
+  Random random(seed("ProblemView"));
   const JobCase door("door_job.yaml");
   int solved = 0, without = 0;
   const int count = trials(20);
   for (int trial = 0; trial < count; ++trial) {
     const std::string what = "trial " + std::to_string(trial);
     const Problem job = random_job(door, random);
-    JobView view;
+    ProblemView view;
     const Answer found = plan_job(door.robot, job, {}, &view);
     expect_same(found, plan_job(door.robot, job), what);
     if (HasFatalFailure()) return;
@@ -219,15 +219,15 @@ TEST(PlanJob, JobsOfTheDataFolderBecomeMotions) {
     SCOPED_TRACE(name);
     const Problem job = with_motion_defaults(load(name));
     const PreparedRobot robot(problem_of_run(job, {0, false}));
-    const JobMotionPlan plan = plan_job_motion(robot, job, {}, {.rate = 50});
-    ASSERT_TRUE(plan.timing && plan.timing->motion);
-    EXPECT_EQ(plan.timing->motion->events.size(), 2 * job.arm().strokes.size());
+    const Answer plan = plan_job_motion(robot, job, {}, {.rate = 50});
+    ASSERT_TRUE(plan.timed());
+    EXPECT_EQ(plan.timed()->arms.front().events.size(), 2 * job.arm().strokes.size());
     std::vector<StrokeRun> order;
-    for (const RunAnswer& run : plan.result.arm().runs) order.push_back(run.run);
+    for (const RunAnswer& run : plan.arm().runs) order.push_back(run.run);
     const JobCheckResult check =
-        check_job_motion(robot, job, order, *plan.timing->motion, {.margins = false});
+        check_job_motion(robot, job, order, plan.timed()->arms.front(), {.margins = false});
     EXPECT_TRUE(check.passed) << check.failures.front();
-    EXPECT_LE(plan.result.cost, 1.05 * plan.result.bound_any);
+    EXPECT_LE(plan.cost, 1.05 * plan.bound_any);
   }
 }
 
@@ -337,20 +337,20 @@ TEST(PlanJob, TakesEveryClassOfArm) {
     const PreparedRobot robot(problem_of_run(job, {0, false}));
     for (int trial = 0; trial < trials(3); ++trial) {
       if (trial > 0) job.arm().home = random_home(robot, job, random);
-      const JobMotionPlan plan = plan_job_motion(robot, job, {}, {});
-      if (plan.result.status != PlanStatus::kSolved) continue;
+      const Answer plan = plan_job_motion(robot, job, {}, {});
+      if (plan.status != PlanStatus::kSolved) continue;
       ++solved;
       const Problem completed = with_motion_defaults(job);
       const JobCheckResult check =
-          check_job(robot, completed, plan.result.arm().parts, {.margins = false});
+          check_job(robot, completed, plan.arm().parts, {.margins = false});
       ASSERT_TRUE(check.passed) << name << " trial " << trial << ": " << check.failures.front();
-      ASSERT_TRUE(plan.timing) << name;
-      if (!plan.timing->motion) continue;
+      ASSERT_TRUE(plan.motion) << name;
+      if (!plan.timed()) continue;
       ++timed;
       std::vector<StrokeRun> order;
-      for (const RunAnswer& run : plan.result.arm().runs) order.push_back(run.run);
+      for (const RunAnswer& run : plan.arm().runs) order.push_back(run.run);
       const JobCheckResult moved =
-          check_job_motion(robot, job, order, *plan.timing->motion, {.margins = false});
+          check_job_motion(robot, job, order, plan.timed()->arms.front(), {.margins = false});
       ASSERT_TRUE(moved.passed) << name << " trial " << trial << ": " << moved.failures.front();
     }
   }
@@ -409,9 +409,9 @@ std::array<double, 3> greatest_shares(const std::vector<TimedRow>& rows, const J
 }
 
 /// Expects a job's motion to keep rates, clearances and its strokes, judged from outside.
-void expect_executable(const JobCase& of, const Problem& job, const JobMotionPlan& plan,
+void expect_executable(const JobCase& of, const Problem& job, const Answer& plan,
                        const std::string& what) {
-  const JobMotion& motion = *plan.timing->motion;
+  const ArmMotion& motion = plan.timed()->arms.front();
   const Chain& chain = of.robot.arm().chain;
   const auto shares = greatest_shares(
       motion.rows, joint_rates(chain, job.arm().transition_limits, ""), motion.rate);
@@ -430,7 +430,7 @@ void expect_executable(const JobCase& of, const Problem& job, const JobMotionPla
   for (std::size_t k = 0; k < motion.events.size(); ++k) {
     const ProcessEvent& event = motion.events[k];
     ASSERT_EQ(event.on, k % 2 == 0) << what;
-    const StrokeRun run = plan.result.arm().runs[k / 2].run;
+    const StrokeRun run = plan.arm().runs[k / 2].run;
     ASSERT_EQ(event.stroke, run.stroke) << what;
     // the tool is at the stroke's end within one sample
     const auto row = static_cast<std::size_t>(std::llround(event.t * motion.rate));
@@ -455,16 +455,17 @@ TEST(JobMotion, KeepsRatesClearancesAndEvents) {
       job.arm().rapid = 0.5;
       const std::string what = job.source + " episode " + std::to_string(k);
       PlanOptions options;
-      const JobMotionPlan plan = plan_job_motion(of->robot, job, options, {});
-      if (plan.result.status != PlanStatus::kSolved) continue;
-      ASSERT_TRUE(plan.timing) << what;
-      if (!plan.timing->motion) continue;
+      const Answer plan = plan_job_motion(of->robot, job, options, {});
+      if (plan.status != PlanStatus::kSolved) continue;
+      ASSERT_TRUE(plan.motion) << what;
+      if (!plan.timed()) continue;
       ++timed;
       expect_executable(*of, job, plan, what);
       if (HasFatalFailure()) return;
       std::vector<StrokeRun> order;
-      for (const RunAnswer& run : plan.result.arm().runs) order.push_back(run.run);
-      const JobCheckResult check = check_job_motion(of->robot, job, order, *plan.timing->motion);
+      for (const RunAnswer& run : plan.arm().runs) order.push_back(run.run);
+      const JobCheckResult check =
+          check_job_motion(of->robot, job, order, plan.timed()->arms.front());
       ASSERT_TRUE(check.passed) << what << ": " << check.failures.front();
     }
   std::printf("%d motions\n", timed);
@@ -490,11 +491,11 @@ TEST(JobMotion, StrokesThatMeetAreTimed) {
   for (TrajectoryRow& row : back.rows) row.s = there.arm().parts[0].rows.back().s - row.s;
   rest.rows = {back.rows.front(), back.rows.front()};
   const std::vector<Part> parts{there.arm().parts[0], rest, back};
-  const JobTimingResult timed = time_job(door.robot, job, parts, {});
+  const MotionTiming timed = time_job(door.robot, job, parts, {});
   ASSERT_TRUE(timed.motion);
-  EXPECT_EQ(std::count(timed.motion->part.begin(), timed.motion->part.end(), 1), 1);
-  const JobCheckResult check =
-      check_job_motion(door.robot, job, {{0, false}, {1, false}}, *timed.motion);
+  const ArmMotion& motion = timed.motion->arms.front();
+  EXPECT_EQ(std::count(motion.part.begin(), motion.part.end(), 1), 1);
+  const JobCheckResult check = check_job_motion(door.robot, job, {{0, false}, {1, false}}, motion);
   EXPECT_TRUE(check.passed) << check.failures.front();
 }
 
@@ -507,10 +508,10 @@ TEST(JobMotion, SpeedsAreStatedBeforePlanning) {
   none.timeout_s = 1e-9;
   EXPECT_THROW(static_cast<void>(plan_job_motion(door.robot, job, none, {})), InputError);
   job.arm().strokes[0].feed.assign(job.arm().strokes[0].waypoints.size(), 0.04);
-  EXPECT_EQ(plan_job_motion(door.robot, job, none, {}).result.status, PlanStatus::kTimeout);
-  const JobMotionPlan plan = plan_job_motion(door.robot, job, {}, {});
-  ASSERT_TRUE(plan.timing && plan.timing->motion);
-  EXPECT_NEAR(plan.timing->motion->runs.front().speed, 0.04, 1e-12);
+  EXPECT_EQ(plan_job_motion(door.robot, job, none, {}).status, PlanStatus::kTimeout);
+  const Answer plan = plan_job_motion(door.robot, job, {}, {});
+  ASSERT_TRUE(plan.timed());
+  EXPECT_NEAR(plan.timed()->arms.front().runs.front().speed, 0.04, 1e-12);
 }
 
 /// A way to spoil a job's answer, by a random amount.
@@ -624,16 +625,16 @@ TEST(CheckJob, RefusesEventsThatLie) {
   Problem job = door.job;
   job.arm().strokes.resize(2);
   for (Stroke& stroke : job.arm().strokes) stroke.approach = Vector3d(0, 0, -0.02);
-  const JobMotionPlan plan = plan_job_motion(door.robot, job, {}, {});
-  ASSERT_TRUE(plan.timing && plan.timing->motion);
+  const Answer plan = plan_job_motion(door.robot, job, {}, {});
+  ASSERT_TRUE(plan.timed());
   std::vector<StrokeRun> order;
-  for (const RunAnswer& run : plan.result.arm().runs) order.push_back(run.run);
-  const auto passes = [&](const JobMotion& motion) {
+  for (const RunAnswer& run : plan.arm().runs) order.push_back(run.run);
+  const auto passes = [&](const ArmMotion& motion) {
     return check_job_motion(door.robot, job, order, motion, {.margins = false}).passed;
   };
-  ASSERT_TRUE(passes(*plan.timing->motion));
+  ASSERT_TRUE(passes(plan.timed()->arms.front()));
   for (int trial = 0; trial < trials(30); ++trial) {
-    JobMotion motion = *plan.timing->motion;
+    ArmMotion motion = plan.timed()->arms.front();
     ProcessEvent& event =
         motion
             .events[static_cast<std::size_t>(random.below(static_cast<int>(motion.events.size())))];
@@ -716,16 +717,16 @@ TEST(CheckJob, FindsTheDirectionsOfRunsInMotions) {
       stroke.reversible = &stroke != &job.arm().strokes.front();  // so that one runs forwards
       stroke.approach = Vector3d(0, 0, -0.02);
     }
-    const JobMotionPlan plan = plan_job_motion(door.robot, job, {}, {});
-    ASSERT_TRUE(plan.timing && plan.timing->motion);
+    const Answer plan = plan_job_motion(door.robot, job, {}, {});
+    ASSERT_TRUE(plan.timed());
     std::vector<StrokeRun> order;
     std::vector<std::size_t> strokes;
-    for (const RunAnswer& run : plan.result.arm().runs) {
+    for (const RunAnswer& run : plan.arm().runs) {
       order.push_back(run.run);
       strokes.push_back(run.run.stroke);
       backwards += run.run.reversed;
     }
-    EXPECT_EQ(runs_of_motion(door.robot, job, strokes, *plan.timing->motion), order);
+    EXPECT_EQ(runs_of_motion(door.robot, job, strokes, plan.timed()->arms.front()), order);
   }
   EXPECT_GT(backwards, 0);
   EXPECT_LT(backwards, 8);

@@ -42,9 +42,9 @@ Problem drilling(bool reversible) {
 TEST(ProcessRange, BeginsAtTheFirstWaypointWhereTheApproachGoesOnIntoTheStroke) {
   const Problem job = drilling(false);
   const PreparedRobot robot(problem_of_run(job, {0, false}));
-  const JobMotionPlan plan = plan_job_motion(robot, job, {}, {});
-  ASSERT_EQ(plan.result.status, PlanStatus::kSolved);
-  for (const Part& part : plan.result.arm().parts) {
+  const Answer plan = plan_job_motion(robot, job, {}, {});
+  ASSERT_EQ(plan.status, PlanStatus::kSolved);
+  for (const Part& part : plan.arm().parts) {
     if (!part.run) continue;
     const std::vector<bool> process = process_of_rows(part, job);
     const auto on = std::find(process.begin(), process.end(), true);
@@ -56,12 +56,13 @@ TEST(ProcessRange, BeginsAtTheFirstWaypointWhereTheApproachGoesOnIntoTheStroke) 
                       1;
     EXPECT_NEAR(part.rows[last].s, 0.053, 1e-9);
   }
-  ASSERT_TRUE(plan.timing && plan.timing->motion);
-  const std::vector<ProcessEvent>& events = plan.timing->motion->events;
+  ASSERT_TRUE(plan.timed());
+  const std::vector<ProcessEvent>& events = plan.timed()->arms.front().events;
   ASSERT_EQ(events.size(), 2U);
   EXPECT_NEAR(events[0].s, 0.02, 1e-3);
   EXPECT_NEAR(events[1].s, 0.053, 1e-3);
-  const JobCheckResult check = check_job_motion(robot, job, {{0, false}}, *plan.timing->motion);
+  const JobCheckResult check =
+      check_job_motion(robot, job, {{0, false}}, plan.timed()->arms.front());
   EXPECT_TRUE(check.passed) << check.failures.front();
 }
 
@@ -89,7 +90,7 @@ TEST(ProcessRange, EndsOfStrokesAreLayers) {
 }
 
 /// Executes a motion faster.
-void speed_up(JobMotion& motion, double factor) {
+void speed_up(ArmMotion& motion, double factor) {
   for (TimedRow& row : motion.rows) {
     row.t /= factor;
     row.v *= factor;
@@ -109,7 +110,7 @@ struct SlowJob {
     job.arm().process_speed = 0.02;
     job.arm().approach_speed = 0.03;
   }
-  [[nodiscard]] JobCheckResult check(const JobMotion& motion,
+  [[nodiscard]] JobCheckResult check(const ArmMotion& motion,
                                      std::optional<double> speed = {}) const {
     return check_job_motion(robot, job, {{0, false}}, motion, {.margins = false, .speed = speed});
   }
@@ -119,9 +120,9 @@ struct SlowJob {
 
 TEST(ToolSpeed, FasterThanTheJobAsksIsRefused) {
   SlowJob slow;
-  const JobMotionPlan plan = plan_job_motion(slow.robot, slow.job, {}, {});
-  ASSERT_TRUE(plan.timing && plan.timing->motion);
-  JobMotion motion = *plan.timing->motion;
+  const Answer plan = plan_job_motion(slow.robot, slow.job, {}, {});
+  ASSERT_TRUE(plan.timed());
+  ArmMotion motion = plan.timed()->arms.front();
   const JobCheckResult as_asked = slow.check(motion);
   EXPECT_TRUE(as_asked.passed) << as_asked.failures.front();
   speed_up(motion, 1.05);
@@ -138,15 +139,15 @@ TEST(ToolSpeed, FasterThanTheJobAsksIsRefused) {
 
 TEST(ToolSpeed, IsThatOfThePlaceOrTheOneGivenForAll) {
   SlowJob slow;
-  const JobMotionPlan fast = plan_job_motion(slow.robot, slow.job, {}, {.speed = 0.04});
-  ASSERT_TRUE(fast.timing && fast.timing->motion);
-  EXPECT_FALSE(slow.check(*fast.timing->motion).passed);
-  EXPECT_TRUE(slow.check(*fast.timing->motion, 0.04).passed);
+  const Answer fast = plan_job_motion(slow.robot, slow.job, {}, {.speed = 0.04});
+  ASSERT_TRUE(fast.timed());
+  EXPECT_FALSE(slow.check(fast.timed()->arms.front()).passed);
+  EXPECT_TRUE(slow.check(fast.timed()->arms.front(), 0.04).passed);
   // A feed stands in place of the job's speed, along the stroke alone.
   slow.job.arm().strokes.front().feed = {0.05, 0.05};
-  EXPECT_TRUE(slow.check(*fast.timing->motion).passed);
+  EXPECT_TRUE(slow.check(fast.timed()->arms.front()).passed);
   slow.job.arm().approach_speed = 0.01;
-  EXPECT_FALSE(slow.check(*fast.timing->motion).passed);
+  EXPECT_FALSE(slow.check(fast.timed()->arms.front()).passed);
 }
 
 }  // namespace

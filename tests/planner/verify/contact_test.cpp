@@ -368,7 +368,7 @@ TEST(Contact, ThatWasNotMeasuredOfTwoArmsIsSaidOfBoth) {
     const auto stopped = stopped_while_measuring(
         [&](const PlanOptions& options) { return plan_workcell(cell, options); }, 0);
     if (!stopped) continue;  // this one has no plan
-    const std::string text = answer_text(*stopped, cell), json = io::to_workcell_json(*stopped);
+    const std::string text = answer_text(*stopped, cell), json = io::to_json(*stopped, cell);
     for (const ArmAnswer& arm : stopped->arms)
       EXPECT_EQ(arm.run().min_clearance_status(), Known::kNotMeasured);
     EXPECT_EQ(stopped->pair.nearest_status(), Known::kNotMeasured);

@@ -15,12 +15,12 @@
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/timing/time_path.hpp"
+#include "swivel/planner/plan/problem_view.hpp"
 #include "swivel/planner/refine/motion.hpp"
 #include "swivel/planner/robot/motion_defaults.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
 #include "swivel/planner/workcell/refine_workcell.hpp"
-#include "swivel/planner/workcell/workcell_view.hpp"
 #include "two_arms.hpp"
 #include "worst_rates.hpp"
 
@@ -129,12 +129,12 @@ struct Worst {
 /// Measures the motion of a workcell: what its rows are, nothing of how they were found.
 class Measurement {
  public:
-  Measurement(const Problem& cell, const PreparedWorkcell& prepared, const WorkcellMotion& motion,
+  Measurement(const Problem& cell, const PreparedWorkcell& prepared, const Motion& motion,
               double speed, Worst& worst)
       : cell_(cell), prepared_(prepared), motion_(motion), speed_(speed), worst_(worst) {}
 
   void run() {
-    const auto& [left, right] = motion_.arms;
+    const ArmMotion &left = motion_.arms[0], &right = motion_.arms[1];
     ASSERT_EQ(left.rows.size(), right.rows.size());
     for (std::size_t row = 0; row < left.rows.size(); ++row) {
       ASSERT_EQ(left.rows[row].t, right.rows[row].t);
@@ -223,7 +223,7 @@ class Measurement {
 
   const Problem& cell_;
   const PreparedWorkcell& prepared_;
-  const WorkcellMotion& motion_;
+  const Motion& motion_;
   double speed_;
   Worst& worst_;
 };
@@ -235,7 +235,7 @@ PlanOptions lazily() {
   return options;
 }
 
-std::array<std::vector<TimedRow>, 2> rows_of(const WorkcellMotion& motion) {
+std::array<std::vector<TimedRow>, 2> rows_of(const Motion& motion) {
   return {motion.arms[0].rows, motion.arms[1].rows};
 }
 
@@ -245,7 +245,7 @@ struct Timed {
   std::optional<PreparedWorkcell> prepared;
   bool solved = false;
   double speed = 0;
-  WorkcellTiming timing;
+  MotionTiming timing;
 };
 
 /// Plans and times a random workcell.
@@ -266,8 +266,8 @@ Timed timed_workcell(const TestRobot& robot, Kind kind, Random& random) {
   return timed;
 }
 
-TEST(WorkcellMotion, KeepsEveryLimitOfBothArms) {
-  Random random(seed("WorkcellMotion.KeepsEveryLimitOfBothArms"));
+TEST(Motion, KeepsEveryLimitOfBothArms) {
+  Random random(seed("Motion.KeepsEveryLimitOfBothArms"));
   const std::array<TestRobot, 2> robots{data_robot("sda10f"), data_robot("sda5f")};
   const int count = trials(240);
   std::array<int, 4> solved{}, moves{};
@@ -286,7 +286,7 @@ TEST(WorkcellMotion, KeepsEveryLimitOfBothArms) {
       continue;
     }
     ++moves[static_cast<std::size_t>(trial % 4)];
-    const WorkcellMotion& motion = *timed.timing.motion;
+    const Motion& motion = *timed.timing.motion;
     blended += motion.blended;
     stops += static_cast<int>(motion.arms[0].stops.size());
     EXPECT_GE(motion.duration, motion.ideal * (1 - 1e-6));
@@ -352,8 +352,8 @@ const char* spoil(std::array<std::vector<TimedRow>, 2>& rows, Random& random) {
   }
 }
 
-TEST(WorkcellMotion, CheckRefusesSpoiltMotions) {
-  Random random(seed("WorkcellMotion.CheckRefusesSpoiltMotions"));
+TEST(Motion, CheckRefusesSpoiltMotions) {
+  Random random(seed("Motion.CheckRefusesSpoiltMotions"));
   const TestRobot robot = data_robot("sda10f");
   int spoilt = 0;
   const int count = trials(80);
@@ -393,14 +393,14 @@ Problem chase(double self_clearance) {
   return with_motion_defaults(std::move(cell));
 }
 
-TEST(WorkcellMotion, StopsWhereABlendWouldBringTheArmsTogether) {
+TEST(Motion, StopsWhereABlendWouldBringTheArmsTogether) {
   const PreparedWorkcell loose(chase(0.001));
   PlanOptions options = lazily();
   options.evidence = Evidence::all();
   const Answer found = plan_workcell(loose, options);
   ASSERT_EQ(found.status, PlanStatus::kSolved);
   const std::array<std::vector<TrajectoryRow>, 2> rows = rows_of_arms(found);
-  const WorkcellTiming passing = time_workcell(loose, rows, {.speed = 0.1});
+  const MotionTiming passing = time_workcell(loose, rows, {.speed = 0.1});
   ASSERT_TRUE(passing.motion);
   EXPECT_EQ(passing.motion->blended, 1);
   EXPECT_TRUE(passing.motion->arms[0].stops.empty());
@@ -410,7 +410,7 @@ TEST(WorkcellMotion, StopsWhereABlendWouldBringTheArmsTogether) {
               found.pair.nearest->bodies[0].c_str(), found.pair.nearest->bodies[1].c_str());
   // At rows the arms keep what they must, but not while one tool comes early.
   const PreparedWorkcell tight(chase(nearest - 0.5e-3));
-  const WorkcellTiming stopping = time_workcell(tight, rows, {.speed = 0.1});
+  const MotionTiming stopping = time_workcell(tight, rows, {.speed = 0.1});
   ASSERT_TRUE(stopping.motion) << stopping.failure->reason;
   EXPECT_EQ(stopping.motion->blended, 0);
   ASSERT_EQ(stopping.motion->arms[0].stops.size(), 1u);
@@ -420,7 +420,7 @@ TEST(WorkcellMotion, StopsWhereABlendWouldBringTheArmsTogether) {
   EXPECT_TRUE(check_workcell_motion(tight, rows_of(*stopping.motion)).passed);
   // Where they do not even at rows, there is no motion.
   const PreparedWorkcell narrow(chase(nearest + 1e-3));
-  const WorkcellTiming none = time_workcell(narrow, rows, {.speed = 0.1});
+  const MotionTiming none = time_workcell(narrow, rows, {.speed = 0.1});
   ASSERT_TRUE(none.failure);
   EXPECT_NE(none.failure->reason.find("come too near"), std::string::npos);
 }
@@ -447,7 +447,7 @@ TEST(RefineWorkcell, IsCheaperAndValid) {
     ++solved;
     in_conflict += found.pair.decided_by != PairSearch::kArmsAlone;
     const std::array<std::vector<TrajectoryRow>, 2> rows = rows_of_arms(found);
-    const RefinedWorkcell refined = refine_workcell(*prepared, rows);
+    const RefinedArms refined = refine_workcell(*prepared, rows);
     EXPECT_NEAR(refined.cost_before, found.cost, 1e-9 * found.cost);
     EXPECT_LE(refined.cost, refined.cost_before);
     EXPECT_LE(refined.turns, 4);
@@ -463,9 +463,9 @@ TEST(RefineWorkcell, IsCheaperAndValid) {
     cheaper += refined.cost < refined.cost_before * (1 - 1e-3);
     saved += 1 - refined.cost / refined.cost_before;
     const TimingOptions options{.speed = 0.25};
-    const WorkcellTiming before = time_workcell(*prepared, rows, options),
-                         after = time_workcell(
-                             *prepared, {refined.arms[0].rows, refined.arms[1].rows}, options);
+    const MotionTiming before = time_workcell(*prepared, rows, options),
+                       after = time_workcell(*prepared,
+                                             {refined.arms[0].rows, refined.arms[1].rows}, options);
     if (!before.motion || !after.motion) continue;
     ++timed;
     faster += after.motion->duration < before.motion->duration;
@@ -499,36 +499,36 @@ TEST(RefineWorkcell, IsPlannedTimedAndProvedInOneCall) {
     options.check = true;
     options.evidence = Evidence::all();
     const Answer plain = plan_workcell(*prepared, options);
-    WorkcellView view;
+    ProblemView view;
     const TimingOptions timing{.speed = 0.25};
-    const WorkcellMotionPlan plan = plan_workcell_motion(*prepared, options, true, timing, &view);
-    ASSERT_EQ(plan.result.status, plain.status);
+    const Answer plan = plan_workcell_motion(*prepared, options, true, timing, &view);
+    ASSERT_EQ(plan.status, plain.status);
     EXPECT_EQ(plan.refinement.has_value(), plain.status == PlanStatus::kSolved);
     if (plain.status != PlanStatus::kSolved) continue;
     ++solved;
     EXPECT_FALSE(plan.stopped);
-    EXPECT_LE(plan.result.cost, plain.cost * (1 + 1e-12));
+    EXPECT_LE(plan.cost, plain.cost * (1 + 1e-12));
     EXPECT_EQ(plan.refinement->cost_before, plain.cost);
-    cheaper += plan.result.cost < plain.cost;
+    cheaper += plan.cost < plain.cost;
     for (std::size_t k = 0; k < 2; ++k) {
-      const ArmAnswer& arm = plan.result.arms[k];
+      const ArmAnswer& arm = plan.arms[k];
       EXPECT_EQ(arm.run().lattice.cost, plain.arms[k].cost());
       EXPECT_EQ(arm.run().evidence.postures, plain.arms[k].run().evidence.postures);
       const std::vector<TrajectoryRow>& rows = plan.refinement->arms[k].rows;
       ASSERT_EQ(arm.rows().size(), rows.size());
       for (std::size_t row = 0; row < rows.size(); ++row) EXPECT_EQ(arm.rows()[row].q, rows[row].q);
     }
-    const WorkcellCheckResult check = check_workcell(*prepared, rows_of_arms(plan.result));
+    const WorkcellCheckResult check = check_workcell(*prepared, rows_of_arms(plan));
     EXPECT_TRUE(check.passed);
-    ASSERT_EQ(plan.result.pair.nearest.has_value(), check.between.has_value());
+    ASSERT_EQ(plan.pair.nearest.has_value(), check.between.has_value());
     if (check.between) {
-      EXPECT_NEAR(plan.result.pair.nearest->margin, check.between->margin, 1e-9);
+      EXPECT_NEAR(plan.pair.nearest->margin, check.between->margin, 1e-9);
     }
-    ASSERT_TRUE(plan.timing);
-    if (!plan.timing->motion) continue;
+    ASSERT_TRUE(plan.motion);
+    if (!plan.timed()) continue;
     ++timed;
     EXPECT_TRUE(
-        check_workcell_motion(*prepared, rows_of(*plan.timing->motion), {.margins = false}).passed);
+        check_workcell_motion(*prepared, rows_of(*plan.timed()), {.margins = false}).passed);
   }
   std::printf("%d solved, %d cheaper, %d timed\n", solved, cheaper, timed);
   EXPECT_GE(solved, at_least(count / 4));
@@ -563,7 +563,7 @@ TEST(RefineWorkcell, RefinesAndTimesRowsOfOtherPlans) {
     } catch (const InputError&) {
       continue;  // a follower has other layers where its leader rounds corners
     }
-    const RefinedWorkcell& refined = found->refinement;
+    const RefinedArms& refined = found->refinement;
     EXPECT_LE(refined.cost, refined.cost_before);
     EXPECT_NEAR(refined.cost_before, plain.cost, 0.05 * plain.cost);
     cheaper += refined.cost < refined.cost_before;
@@ -588,19 +588,19 @@ TEST(RefineWorkcell, LeavesUnrefinedPlansAsTheyAre) {
     const Problem cell = random_workcell(robot, random);
     const PreparedWorkcell prepared(cell);
     const Answer plain = plan_workcell(prepared, lazily());
-    const WorkcellMotionPlan plan = plan_workcell_motion(prepared, lazily(), false, std::nullopt);
-    EXPECT_FALSE(plan.refinement || plan.timing || plan.stopped);
-    EXPECT_EQ(plan.result.cost, plain.cost);
+    const Answer plan = plan_workcell_motion(prepared, lazily(), false, std::nullopt);
+    EXPECT_FALSE(plan.refinement || plan.motion || plan.stopped);
+    EXPECT_EQ(plan.cost, plain.cost);
     for (std::size_t k = 0; k < 2; ++k) {
-      ASSERT_EQ(plan.result.arms[k].rows().size(), plain.arms[k].rows().size());
+      ASSERT_EQ(plan.arms[k].rows().size(), plain.arms[k].rows().size());
       for (std::size_t row = 0; row < plain.arms[k].rows().size(); ++row)
-        EXPECT_EQ(plan.result.arms[k].rows()[row].q, plain.arms[k].rows()[row].q);
+        EXPECT_EQ(plan.arms[k].rows()[row].q, plain.arms[k].rows()[row].q);
     }
   }
 }
 
-TEST(WorkcellMotion, RefusesWhatIsNoTiming) {
-  Random random(seed("WorkcellMotion.RefusesWhatIsNoTiming"));
+TEST(Motion, RefusesWhatIsNoTiming) {
+  Random random(seed("Motion.RefusesWhatIsNoTiming"));
   const Problem cell = random_workcell(data_robot("sda10f"), random);
   const std::array<std::vector<TrajectoryRow>, 2> none;
   const PreparedWorkcell completed(with_motion_defaults(cell));

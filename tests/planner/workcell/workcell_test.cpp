@@ -20,9 +20,9 @@
 #include "swivel/graph/verdicts/verdicts.hpp"
 #include "swivel/planner/plan/plan_view.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/plan/problem_view.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/workcell/check_workcell.hpp"
-#include "swivel/planner/workcell/workcell_view.hpp"
 #include "two_arms.hpp"
 
 namespace swivel::test {
@@ -369,12 +369,12 @@ TEST(Workcell, CheckRefusesSpoiltAnswers) {
 
 /// Expects that no node of the one arm's side of a region keeps clear of any of the other's, and
 /// that the paths of both arms alone lead through it.
-void expect_conflict(const PreparedWorkcell& prepared, const WorkcellView& view, Random& random) {
+void expect_conflict(const PreparedWorkcell& prepared, const ProblemView& view, Random& random) {
   const RegionOfConflict& region = *view.region;
   InterArmWorld::Query query(prepared.between(), DistanceProofs::kOff);
   const auto rows = [&](std::size_t arm, int slot) {
-    return *view.arms[arm].lattice.exact_config(region.layer, slot,
-                                                *view.arms[arm].lattice.node(region.layer, slot));
+    return *view.runs[arm].lattice.exact_config(region.layer, slot,
+                                                *view.runs[arm].lattice.node(region.layer, slot));
   };
   for (std::size_t k = 0; k < 2; ++k) {
     const std::vector<int>& slots = region.slots[k];
@@ -393,11 +393,11 @@ void expect_conflict(const PreparedWorkcell& prepared, const WorkcellView& view,
 
 /// Expects that the bodies of a conflict are those that meet on the paths of both arms alone. Where
 /// bodies touch they have a point in common, else points that are as far apart as they are.
-void expect_meeting(const PreparedWorkcell& prepared, const WorkcellView& view,
+void expect_meeting(const PreparedWorkcell& prepared, const ProblemView& view,
                     const ArmConflict& conflict) {
   std::array<Config, 2> q;
   for (std::size_t k = 0; k < 2; ++k) {
-    const Lattice& lattice = view.arms[k].lattice;
+    const Lattice& lattice = view.runs[k].lattice;
     q[k] = lattice.path_rows(view.alone[k])[static_cast<std::size_t>(conflict.layer)].q;
   }
   InterArmWorld::Query query(prepared.between());
@@ -424,14 +424,14 @@ TEST(Workcell, ShowsWhatItFoundOut) {
     Problem cell = random_workcell(robot, random);
     if (random.coin()) cell.scene.push_back(random_post(random));
     const PreparedWorkcell prepared(cell);
-    WorkcellView view;
+    ProblemView view;
     const Answer found = plan_workcell(prepared, lazily(), &view);
     EXPECT_EQ(found.cost, plan_workcell(prepared, lazily()).cost);
-    ASSERT_EQ(view.arms.size(), 2u);
+    ASSERT_EQ(view.runs.size(), 2u);
     const bool met = found.pair.decided_by != PairSearch::kArmsAlone;
     EXPECT_EQ(view.region.has_value(), met);
     for (std::size_t k = 0; k < 2; ++k) {
-      const PlanView& arm = view.arms[k];
+      const PlanView& arm = view.runs[k];
       const bool has_path = found.arms[k].run().least_cost < kNone;
       EXPECT_EQ(view.alone[k].empty(), !has_path);
       without += has_path ? 0 : 1;

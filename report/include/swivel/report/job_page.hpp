@@ -3,8 +3,8 @@
 #include <string>
 
 #include "swivel/core/answer/answer.hpp"
-#include "swivel/core/motion/job_motion.hpp"
-#include "swivel/planner/job/job_view.hpp"
+#include "swivel/core/answer/motion.hpp"
+#include "swivel/planner/plan/problem_view.hpp"
 #include "swivel/report/page.hpp"
 
 namespace swivel {
@@ -14,8 +14,8 @@ struct PlannedJob {
   const PreparedRobot& robot;
   const Problem& job;
   const Answer& result;
-  const JobView& view;
-  const JobMotion* motion = nullptr;  ///< null where the job was not timed or has no motion
+  const ProblemView& view;
+  const ArmMotion* motion = nullptr;  ///< null where the job was not timed or has no motion
 };
 
 /// Returns one HTML file that needs nothing else: the arm among the scene in three dimensions,

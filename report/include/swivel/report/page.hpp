@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/motion/timed_path.hpp"
+#include "swivel/core/answer/timed_path.hpp"
 #include "swivel/core/problem/robot_model.hpp"
 #include "swivel/report/lattice_map.hpp"
 

@@ -3,9 +3,9 @@
 #include <string>
 
 #include "swivel/core/answer/answer.hpp"
-#include "swivel/core/motion/workcell_motion.hpp"
+#include "swivel/core/answer/motion.hpp"
+#include "swivel/planner/plan/problem_view.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
-#include "swivel/planner/workcell/workcell_view.hpp"
 #include "swivel/report/page.hpp"
 
 namespace swivel {
@@ -15,8 +15,8 @@ struct PlannedWorkcell {
   const PreparedWorkcell& prepared;
   const Problem& cell;
   const Answer& result;
-  const WorkcellView& view;
-  const WorkcellMotion* motion = nullptr;  ///< of the result's trajectories; null if there is none
+  const ProblemView& view;
+  const Motion* motion = nullptr;  ///< of the result's trajectories; null if there is none
 };
 
 /// Returns one HTML file that needs nothing else: both arms among the scene in three dimensions,

@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "swivel/core/base/types.hpp"
@@ -123,6 +124,9 @@ struct AdviceOnWorkcell {
   std::vector<WorkcellAdvice> cell;
   std::vector<ArmAdvice> arms;
 };
+
+/// What would help a problem that has no answer: one path, strokes or two arms.
+using AnyAdvice = std::variant<std::vector<Advice>, AdviceOnJob, AdviceOnWorkcell>;
 
 /// Returns the name of a change in files: "without_strokes", "reversed", "best_order", "home",
 /// "approach", "retract", "lines".

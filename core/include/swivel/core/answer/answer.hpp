@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "swivel/core/answer/motion.hpp"
 #include "swivel/core/answer/plan.hpp"
+#include "swivel/core/answer/refined.hpp"
 #include "swivel/core/problem/problem.hpp"
 
 namespace swivel {
@@ -149,6 +151,16 @@ struct Answer {
   double bound_any = 0;
   bool checked = false;  ///< the parts were verified by check_job() or check_workcell()
   bool refined = false;  ///< the rows are refined ones
+  /// What refining brought, where it was asked for and there are rows. Then cost, rows and measures
+  /// are those of the refined rows; lattice_cost, bounds and RunAnswer::lattice stay those of the
+  /// lattices' paths.
+  std::optional<RefinedArms> refinement;
+  /// How a motion in time was asked for; `speed` is 0 where each stroke has its own.
+  std::optional<TimingOptions> timing;
+  /// The motion, where one was asked for, there are rows, and time was left to make it.
+  std::optional<MotionTiming> motion;
+  /// There are rows, but time ran out before the refinement or the motion that was asked for.
+  bool stopped = false;
   /// One for each arm of the problem. Rows of one number of two arms are simultaneous.
   std::vector<ArmAnswer> arms = std::vector<ArmAnswer>(1);
   PairAnswer pair;  ///< of two arms
@@ -165,6 +177,12 @@ struct Answer {
   [[nodiscard]] bool has_rows() const { return !arms.front().parts.empty(); }
   /// Returns the number of the arm whose motion was given, if one was.
   [[nodiscard]] std::optional<std::size_t> given_arm() const;
+  /// Returns the motion in time, if there is one; else null.
+  [[nodiscard]] const Motion* timed() const {
+    return motion && motion->motion ? &*motion->motion : nullptr;
+  }
+  /// Returns whether all that was asked for is there: rows, and a motion where one was asked for.
+  [[nodiscard]] bool is_whole() const { return has_rows() && (!timing || timed() != nullptr); }
 };
 
 /// Returns the answer to a problem of one path.

@@ -29,6 +29,9 @@ namespace swivel {
 /// given.
 [[nodiscard]] std::string advice_text(const std::vector<Advice>& advice);
 
+/// Returns the advice on a problem for the terminal, a line for each change.
+[[nodiscard]] std::string advice_text(const AnyAdvice& advice);
+
 /// Returns what an infeasibility certificate of a size in bytes holds: its layers, and which causes
 /// remove how many nodes and edges.
 [[nodiscard]] std::string certificate_text(const InfeasibilityCertificate& certificate,

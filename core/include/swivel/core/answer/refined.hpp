@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <array>
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -22,12 +22,16 @@ struct Refined {
   bool from_second_seed = false;
 };
 
-/// The refined trajectories of two arms, and how they changed.
-struct RefinedWorkcell {
+/// The refined trajectories of the arms of an answer, and how they changed.
+struct RefinedArms {
   /// The rows of each arm, refined or not, with the cost before and now, and the work of all turns.
-  std::array<Refined, 2> arms;
+  std::vector<Refined> arms;
   int turns = 0;                     ///< times that both arms were refined, one after the other
-  double cost_before = 0, cost = 0;  ///< of both paths together
+  double cost_before = 0, cost = 0;  ///< of all arms together
+  /// Returns whether the rows of any arm are refined ones.
+  [[nodiscard]] bool any() const {
+    return std::any_of(arms.begin(), arms.end(), [](const Refined& arm) { return arm.refined; });
+  }
 };
 
 }  // namespace swivel

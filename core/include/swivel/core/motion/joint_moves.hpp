@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "swivel/core/motion/timed_path.hpp"
+#include "swivel/core/answer/timed_path.hpp"
 
 namespace swivel {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "swivel/core/answer/plan.hpp"
+#include "swivel/core/answer/timed_path.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
-#include "swivel/core/motion/timed_path.hpp"
 #include "swivel/core/problem/tool_path.hpp"
 
 namespace swivel {

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "swivel/core/answer/timed_path.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/motion/path_motion.hpp"
-#include "swivel/core/motion/timed_path.hpp"
 #include "swivel/core/timing/shared_travel.hpp"
 
 namespace swivel {

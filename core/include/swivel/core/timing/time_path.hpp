@@ -2,10 +2,10 @@
 #pragma once
 #include <string>
 
+#include "swivel/core/answer/timed_path.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/motion/path_motion.hpp"
-#include "swivel/core/motion/timed_path.hpp"
 #include "swivel/core/problem/path_problem.hpp"
 
 namespace swivel {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "swivel/core/answer/answer.hpp"
-#include "swivel/core/motion/job_motion.hpp"
+#include "swivel/core/answer/motion.hpp"
 #include "swivel/io/motions/motion.hpp"
 
 namespace swivel::io {
@@ -41,14 +41,14 @@ struct JobTrajectory {
 /// empty where it ends a transition; other rows of transitions have none. `process` is 1 from the
 /// event that switches it on to the row before the one that switches it off. Throws InputError if
 /// both events of a stroke are at the same row.
-[[nodiscard]] std::string to_job_motion_csv(const JobMotion& motion, const Problem& job,
+[[nodiscard]] std::string to_job_motion_csv(const ArmMotion& motion, const Problem& job,
                                             const JointNames& joint_names);
 /// Returns the motion of a job in the format of the file name's ending: .csv as
 /// to_job_motion_csv(), .json or .yaml as to_trajectory_json() and to_trajectory_yaml(), with the
 /// events of the process as the key `events`, .mcap as to_mcap(), with the events as messages in
 /// JSON on the topic /process. Each event says from when to when, and from where to where, the run
 /// of its stroke goes. Throws InputError for any other ending, and as to_job_motion_csv().
-[[nodiscard]] std::string job_motion_text(const JobMotion& motion, const Problem& job,
+[[nodiscard]] std::string job_motion_text(const ArmMotion& motion, const Problem& job,
                                           const JointNames& joint_names,
                                           const std::string& frame_id,
                                           const std::filesystem::path& file);
@@ -56,7 +56,7 @@ struct JobTrajectory {
 /// The motion of a job as read from a file. Values of rows that the file does not state are 0; s of
 /// an event that it does not state is not a number.
 struct JobMotionFile {
-  JobMotion motion;                  ///< its rows, parts, rate, duration, events and roll
+  ArmMotion motion;                  ///< its rows, parts, rate, duration, events and roll
   std::vector<std::size_t> strokes;  ///< of its runs, in their order: indices in Problem::strokes
   Stated stated;                     ///< complete_job_motion() works out the rest
 };

@@ -8,7 +8,7 @@
 
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/answer/stated.hpp"
-#include "swivel/core/motion/timed_path.hpp"
+#include "swivel/core/answer/timed_path.hpp"
 
 namespace swivel::io {
 

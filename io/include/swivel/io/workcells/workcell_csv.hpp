@@ -7,19 +7,19 @@
 #include <vector>
 
 #include "swivel/core/answer/answer.hpp"
-#include "swivel/core/motion/workcell_motion.hpp"
+#include "swivel/core/answer/motion.hpp"
 #include "swivel/io/motions/motion.hpp"
 
 namespace swivel::io {
 
 /// Returns a timed motion of both arms as CSV, one row for each sample: the column t, those of
 /// to_csv(), then the joints of both with _v (rad/s) and _a (rad/s^2).
-[[nodiscard]] std::string to_workcell_motion_csv(const WorkcellMotion& motion,
+[[nodiscard]] std::string to_workcell_motion_csv(const Motion& motion,
                                                  const std::array<JointNames, 2>& joint_names);
 /// Returns a timed motion of both arms in the format of the file name's ending: .csv as above,
 /// .json, .yaml or .mcap as motion_text() has it, with the joints of both arms, those of arm 0
 /// first. Throws InputError for any other.
-[[nodiscard]] std::string workcell_motion_text(const WorkcellMotion& motion,
+[[nodiscard]] std::string workcell_motion_text(const Motion& motion,
                                                const std::array<JointNames, 2>& joint_names,
                                                const std::string& frame_id,
                                                const std::filesystem::path& file);

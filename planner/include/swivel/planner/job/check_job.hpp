@@ -10,7 +10,7 @@
 
 namespace swivel {
 
-struct JobMotion;
+struct ArmMotion;
 
 /// The result of an independent check of a planned job.
 struct JobCheckResult {
@@ -44,7 +44,7 @@ struct JobCheckResult {
 /// begin and the end of each stroke. Throws as check_job() does.
 [[nodiscard]] JobCheckResult check_job_motion(const PreparedRobot& robot, const Problem& job,
                                               const std::vector<StrokeRun>& order,
-                                              const JobMotion& motion,
+                                              const ArmMotion& motion,
                                               const CheckOptions& options = {});
 
 /// Adds a failure to `result` for each run among the parts of a job of which `process`, by part and
@@ -70,6 +70,6 @@ void require_passed(const JobCheckResult& result);
 /// its last waypoint (begins_at_last_waypoint()).
 [[nodiscard]] std::vector<StrokeRun> runs_of_motion(const PreparedRobot& robot, const Problem& job,
                                                     const std::vector<std::size_t>& strokes,
-                                                    const JobMotion& motion);
+                                                    const ArmMotion& motion);
 
 }  // namespace swivel

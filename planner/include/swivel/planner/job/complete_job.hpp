@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "swivel/core/answer/answer.hpp"
+#include "swivel/core/answer/motion.hpp"
 #include "swivel/core/answer/stated.hpp"
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/motion/job_motion.hpp"
 #include "swivel/core/problem/problem.hpp"
 
 namespace swivel {
@@ -24,8 +24,8 @@ class PreparedRobot;
 /// does of one path, for check_job_motion(), and returns the motion. `order` has its runs. The s of
 /// an event becomes that of its row, if it is not a number or differs by at most 1e-6 m. Throws as
 /// complete_motion() does, with the name of the stroke.
-[[nodiscard]] JobMotion complete_job_motion(const PreparedRobot& robot, const Problem& job,
-                                            const std::vector<StrokeRun>& order, JobMotion motion,
+[[nodiscard]] ArmMotion complete_job_motion(const PreparedRobot& robot, const Problem& job,
+                                            const std::vector<StrokeRun>& order, ArmMotion motion,
                                             const Stated& stated, const Budget& budget = {});
 
 /// Returns the parts of a job's motion, whose times are left aside, for time_job(): the rows of
@@ -35,6 +35,6 @@ class PreparedRobot;
 /// does, with the name of the stroke.
 [[nodiscard]] std::vector<Part> parts_of_motion(const PreparedRobot& robot, const Problem& job,
                                                 const std::vector<StrokeRun>& order,
-                                                const JobMotion& motion, const Budget& budget = {});
+                                                const ArmMotion& motion, const Budget& budget = {});
 
 }  // namespace swivel

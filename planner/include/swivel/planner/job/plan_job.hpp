@@ -7,7 +7,7 @@
 namespace swivel {
 
 class PreparedRobot;
-struct JobView;
+struct ProblemView;
 
 /// Plans a job: the cheapest path through every stroke, joined by transitions in joint space, from
 /// home and back. The result is the same at any thread count, unless it times out; then its parts
@@ -20,6 +20,6 @@ struct JobView;
 /// prepared for this job (PreparedRobot::require_prepared_for). `view`, if given, gets what was
 /// found out about the runs.
 [[nodiscard]] Answer plan_job(const PreparedRobot& robot, const Problem& job,
-                              const PlanOptions& options = {}, JobView* view = nullptr);
+                              const PlanOptions& options = {}, ProblemView* view = nullptr);
 
 }  // namespace swivel

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "swivel/core/answer/answer.hpp"
+#include "swivel/core/answer/motion.hpp"
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/motion/job_motion.hpp"
 #include "swivel/core/problem/problem.hpp"
 #include "swivel/planner/job/check_job.hpp"
 #include "swivel/planner/plan/plan_options.hpp"
@@ -14,7 +14,7 @@
 namespace swivel {
 
 class PreparedRobot;
-struct JobView;
+struct ProblemView;
 
 /// How time_job() times a job.
 struct JobTimingOptions {
@@ -35,24 +35,17 @@ void require_speeds(const Problem& job, const JobTimingOptions& options);
 /// completed by with_motion_defaults(). Throws InputError where a stroke has no speed or a joint no
 /// speed limit, InvalidArgument as plan_job() does and for parts that are not those of the job, and
 /// Stopped.
-[[nodiscard]] JobTimingResult time_job(const PreparedRobot& robot, const Problem& job,
-                                       const std::vector<Part>& parts,
-                                       const JobTimingOptions& options, const Budget& budget = {});
+[[nodiscard]] MotionTiming time_job(const PreparedRobot& robot, const Problem& job,
+                                    const std::vector<Part>& parts, const JobTimingOptions& options,
+                                    const Budget& budget = {});
 
-/// The result of plan_job_motion(): a job and its motion in time.
-struct JobMotionPlan {
-  Answer result;
-  std::optional<JobTimingResult> timing;  ///< set if there is a job, unless `stopped`
-  bool stopped = false;                   ///< there is a job, but time ran out before its motion
-};
 /// Plans a job completed by with_motion_defaults(), and times it. A job whose cheapest runs jump
 /// from branch to branch at a singularity is planned again without such steps, if that is possible.
 /// The time-out of `options` covers everything. Throws as plan_job() and time_job() do, InputError
 /// of a stroke without a speed before planning. `view`, if given, gets what was found out about the
-/// runs.
-[[nodiscard]] JobMotionPlan plan_job_motion(const PreparedRobot& robot, const Problem& job,
-                                            const PlanOptions& options,
-                                            const JobTimingOptions& timing,
-                                            JobView* view = nullptr);
+/// runs. Answer::motion has the motion in time, where there is a job, unless Answer::stopped.
+[[nodiscard]] Answer plan_job_motion(const PreparedRobot& robot, const Problem& job,
+                                     const PlanOptions& options, const JobTimingOptions& timing,
+                                     ProblemView* view = nullptr);
 
 }  // namespace swivel

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "swivel/core/answer/plan.hpp"
-#include "swivel/core/motion/timed_path.hpp"
+#include "swivel/core/answer/timed_path.hpp"
 #include "swivel/core/problem/path_problem.hpp"
 #include "swivel/planner/plan/planner.hpp"
 

@@ -4,8 +4,9 @@
 #include <optional>
 #include <vector>
 
+#include "swivel/core/answer/answer.hpp"
 #include "swivel/core/answer/refined.hpp"
-#include "swivel/core/motion/timed_path.hpp"
+#include "swivel/core/answer/timed_path.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/robot/motion_defaults.hpp"
 
@@ -37,6 +38,10 @@ struct MotionPlan {
   std::optional<MotionResult> motion;
   bool stopped = false;  ///< there is a path, but time ran out before the rest was done
 };
+/// Returns the answer to a problem of one path from the plan of its path and motion. `timing` is
+/// how the motion was asked for.
+[[nodiscard]] Answer answer_of(MotionPlan plan, const std::optional<TimingOptions>& timing);
+
 /// Plans the planner's problem, then refines the path if `refined` is true, and times it if
 /// `timing` is set. With timing, a path that jumps from branch to branch at a singularity is
 /// planned again without such steps, if that is possible; and if bodies come too near between

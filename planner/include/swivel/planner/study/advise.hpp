@@ -23,7 +23,7 @@ namespace swivel {
 /// verdict; planner kind, hooks and threads are those of `options`, whose time-out covers all
 /// trials together (one second if unset). Empty unless the verdict is infeasible. Throws as
 /// Planner::plan() does. The number of threads changes the result only through the time.
-[[nodiscard]] std::vector<Advice> advise(const Planner& planner, const PlanResult& result,
+[[nodiscard]] std::vector<Advice> advise(const Planner& planner, const RunAnswer& result,
                                          PlanOptions options = {});
 
 /// Returns changes that would help a job that cannot be planned, each planned alone. Where strokes

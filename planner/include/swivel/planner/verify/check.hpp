@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "swivel/core/answer/plan.hpp"
+#include "swivel/core/answer/timed_path.hpp"
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/motion/timed_path.hpp"
 #include "swivel/core/problem/path_problem.hpp"
 
 namespace swivel {

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "swivel/core/answer/stated.hpp"
+#include "swivel/core/answer/timed_path.hpp"
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/motion/timed_path.hpp"
 
 namespace swivel {
 

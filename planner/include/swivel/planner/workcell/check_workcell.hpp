@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "swivel/core/answer/plan.hpp"
+#include "swivel/core/answer/timed_path.hpp"
 #include "swivel/core/answer/workcell_certificate.hpp"
-#include "swivel/core/motion/timed_path.hpp"
 #include "swivel/core/problem/problem.hpp"
 #include "swivel/planner/verify/check.hpp"
 #include "swivel/planner/workcell/prepared/prepared_workcell.hpp"

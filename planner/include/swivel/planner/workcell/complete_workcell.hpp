@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "swivel/core/answer/stated.hpp"
+#include "swivel/core/answer/timed_path.hpp"
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/motion/timed_path.hpp"
 #include "swivel/planner/workcell/prepared/prepared_workcell.hpp"
 
 namespace swivel {

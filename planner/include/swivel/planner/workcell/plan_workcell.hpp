@@ -8,7 +8,7 @@
 
 namespace swivel {
 
-struct WorkcellView;
+struct ProblemView;
 
 /// Plans two arms that work at one time: the two paths without conflict whose costs together are
 /// least. Where the arms' own answers have no conflict, they are the answer, bit for bit. The
@@ -21,7 +21,7 @@ struct WorkcellView;
 [[nodiscard]] Answer plan_workcell(const Problem& cell, const PlanOptions& options = {});
 /// Plans a workcell that was prepared before. `view`: filled with what was found out, or null.
 [[nodiscard]] Answer plan_workcell(const PreparedWorkcell& prepared,
-                                   const PlanOptions& options = {}, WorkcellView* view = nullptr);
+                                   const PlanOptions& options = {}, ProblemView* view = nullptr);
 
 /// Returns a certificate that a workcell has no plan, which verify_certificate() verifies. It comes
 /// from a search of its own, by regions of conflict alone: where plan_workcell() was decided by

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "swivel/core/motion/workcell_motion.hpp"
+#include "swivel/core/answer/motion.hpp"
 #include "swivel/core/problem/problem.hpp"
 #include "swivel/planner/robot/motion_defaults.hpp"
 #include "swivel/planner/workcell/check_workcell.hpp"
@@ -31,14 +31,14 @@ namespace swivel {
 /// `prepared` is that of a workcell with_motion_defaults(). Throws InvalidArgument for another one,
 /// for options that are not positive, and for `options.speeds`, InputError for rows that are not at
 /// layers and for a joint without a speed limit, and Stopped.
-[[nodiscard]] WorkcellTiming time_workcell(const PreparedWorkcell& prepared,
-                                           const std::array<std::vector<TrajectoryRow>, 2>& rows,
-                                           const TimingOptions& options, const Budget& budget = {});
+[[nodiscard]] MotionTiming time_workcell(const PreparedWorkcell& prepared,
+                                         const std::array<std::vector<TrajectoryRow>, 2>& rows,
+                                         const TimingOptions& options, const Budget& budget = {});
 
 /// Refined trajectories of both arms, and their motion in time.
 struct RefinedWorkcellMotion {
-  RefinedWorkcell refinement;
-  WorkcellTiming timing;
+  RefinedArms refinement;
+  MotionTiming timing;
   double refine_ms = 0;  ///< spent on refining
 };
 /// Refines trajectories of both arms as refine_workcell() does, and times them as time_workcell()
@@ -50,16 +50,6 @@ struct RefinedWorkcellMotion {
     const PreparedWorkcell& prepared, const std::array<std::vector<TrajectoryRow>, 2>& rows,
     const TimingOptions& options, const Budget& budget = {});
 
-/// A plan of a workcell, and if asked for, its refinement and its motion in time.
-struct WorkcellMotionPlan {
-  /// The plan. If it is solved, trajectories, costs and measures describe the paths that are
-  /// executed; lattice.cost of each arm and the bound stay those of the lattices' paths.
-  Answer result;
-  std::optional<RefinedWorkcell> refinement;  ///< set if asked for and there is a plan
-  /// Set if asked for, there is a plan and time was left; has a failure where it has no motion.
-  std::optional<WorkcellTiming> timing;
-  bool stopped = false;  ///< there is a plan, but time ran out before the rest was done
-};
 /// Plans a workcell, then refines the plan if `refined` is true, and times it if `timing` is set:
 /// all within the time-out of `options`, and proved if options.check. Where bodies come too near
 /// between rows of a refined plan that is timed, it is refined again with more clearance at rows.
@@ -67,9 +57,9 @@ struct WorkcellMotionPlan {
 /// alone, keep_clearance_between_layers() should have been applied to the limits of its arms.
 /// `view`: as of plan_workcell(). Throws as plan_workcell(), refine_workcell() and time_workcell()
 /// do, std::logic_error if options.check finds an answer invalid.
-[[nodiscard]] WorkcellMotionPlan plan_workcell_motion(const PreparedWorkcell& prepared,
-                                                      const PlanOptions& options, bool refined,
-                                                      const std::optional<TimingOptions>& timing,
-                                                      WorkcellView* view = nullptr);
+[[nodiscard]] Answer plan_workcell_motion(const PreparedWorkcell& prepared,
+                                          const PlanOptions& options, bool refined,
+                                          const std::optional<TimingOptions>& timing,
+                                          ProblemView* view = nullptr);
 
 }  // namespace swivel

@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "answer/answer_words.hpp"
+#include "answer/text/answer_words.hpp"
 #include "swivel/core/base/types.hpp"
 #include "swivel/core/messages/formatted.hpp"
 
@@ -161,6 +161,10 @@ std::string advice_text(const std::vector<Advice>& advice) {
         unknown += (unknown.empty() ? "" : ", ") + words(one);
     }
   return lines + (unknown.empty() ? "" : "  not tried in the time: " + unknown + '\n');
+}
+
+std::string advice_text(const AnyAdvice& advice) {
+  return std::visit([](const auto& one) { return advice_text(one); }, advice);
 }
 
 std::string removed_text(const InfeasibilityCertificate& certificate) {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "answer/answer_words.hpp"
+#include "answer/text/answer_words.hpp"
 #include "swivel/core/messages/formatted.hpp"
 
 namespace swivel {

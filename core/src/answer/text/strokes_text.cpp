@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "answer/answer_words.hpp"
+#include "answer/text/answer_words.hpp"
 
 #include <algorithm>
 #include <array>

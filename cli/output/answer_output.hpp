@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <optional>
+#include <string>
+
+#include "swivel/core/answer/advice.hpp"
+#include "swivel/core/answer/answer.hpp"
+#include "swivel/planner/problem/problem_planner.hpp"
+
+namespace swivel::cli {
+
+/// Returns an answer in full for people: verdict, advice, refinement and motion, but of one path
+/// the verdict and the advice alone. `problem` is executed_problem() of the answer.
+[[nodiscard]] std::string whole_text(const Answer& answer, const Problem& problem,
+                                     const std::optional<AnyAdvice>& advice);
+
+/// Prints an answer with the times and the work of its plan, its certificate, of a size in bytes,
+/// and its advice on standard output, and its warnings on standard error.
+void print_answer(const Answer& answer, const Problem& problem,
+                  const std::optional<AnyAdvice>& advice,
+                  const std::optional<AnyCertificate>& certificate, std::size_t bytes);
+
+}  // namespace swivel::cli
