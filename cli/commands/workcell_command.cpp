@@ -1,36 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "commands/workcell_command.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "options/commands.hpp"
 #include "options/search_options.hpp"
-#include "output/advice_or_warning.hpp"
 #include "output/check_output.hpp"
 #include "output/motion_output.hpp"
 #include "output/workcell_output.hpp"
-#include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/io/robots/urdf_shapes.hpp"
-#include "swivel/planner/plan/problem_view.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
-#include "swivel/planner/study/advise.hpp"
 #include "swivel/planner/workcell/check_workcell.hpp"
 #include "swivel/planner/workcell/complete_workcell.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
 #include "swivel/planner/workcell/time_workcell.hpp"
-#include "swivel/report/workcell_page.hpp"
-#include "terminal/progress.hpp"
 #include "terminal/terminal.hpp"
 
 namespace swivel::cli {
