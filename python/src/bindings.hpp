@@ -23,6 +23,34 @@ namespace swivel::python {
 
 namespace py = pybind11;
 
+/// Text that is an argument of a template.
+template <std::size_t kSize>
+struct Words {
+  constexpr Words(const char (&given)[kSize]) { std::copy_n(given, kSize, text); }  // implicit
+  char text[kSize] = {};
+};
+/// A Python object, checked as a `Base`. Signatures, and the stubs that are made of them, say that
+/// it is of the type `kType`.
+template <Words kType, class Base = py::object>
+class Typed : public Base {
+ public:
+  using Base::Base;
+  Typed(Base value) : Base(std::move(value)) {}       // implicit
+  Typed(const char* value) : Base(py::str(value)) {}  // implicit
+  static bool check_(py::handle value) { return py::isinstance<Base>(value); }
+};
+/// A member of an enum, or its name: to_enum() reads it.
+template <class E>
+class OrName : public py::object {
+ public:
+  using py::object::object;
+  static bool check_(py::handle value) { return py::isinstance<py::object>(value); }
+};
+using ArrayLike = Typed<"ArrayLike">;
+using OptionalArray = Typed<"Optional[ArrayLike]">;
+using SceneObjects = Typed<"Iterable[SceneObject]", py::iterable>;
+using ProgressCallback = Typed<"_Progress">;
+
 /// A mesh, shared by all that use it.
 struct Mesh {
   MeshPtr mesh;
@@ -47,14 +75,14 @@ void pass_half_turns(const Robot& robot, std::vector<Waypoint>& waypoints);
 /// Returns a read-only numpy array of one member of all rows, without a copy. `first` points at the
 /// member in the first row. Shape (n,), or (n, width) if width > 0.
 template <class Row, class Number>
-py::array column(const std::shared_ptr<const std::vector<Row>>& rows, const Number* first,
-                 py::ssize_t width = 0) {
+py::array_t<Number> column(const std::shared_ptr<const std::vector<Row>>& rows, const Number* first,
+                           py::ssize_t width = 0) {
   using Owner = std::shared_ptr<const std::vector<Row>>;
   const auto count = static_cast<py::ssize_t>(rows->size());
   std::vector<py::ssize_t> shape{count}, strides{static_cast<py::ssize_t>(sizeof(Row))};
   if (width > 0) shape.push_back(width), strides.push_back(sizeof(Number));
   const py::capsule owner(new Owner(rows), [](void* kept) { delete static_cast<Owner*>(kept); });
-  py::array array(py::dtype::of<Number>(), shape, strides, first, owner);
+  py::array_t<Number> array(shape, strides, first, owner);
   array.attr("flags").attr("writeable") = false;
   return array;
 }
@@ -144,7 +172,7 @@ class PlainStruct {
   PlainStruct& choice(const char* name, E T::*member, const char* doc) {
     class_.def_property(
         name, [member](const T& self) { return self.*member; },
-        [member](T& self, py::handle value) { self.*member = to_enum<E>(value); }, doc);
+        [member](T& self, const OrName<E>& value) { self.*member = to_enum<E>(value); }, doc);
     names_->push_back(name);
     return *this;
   }
@@ -200,6 +228,15 @@ void bind_job_drawings(py::module_& m);
 }  // namespace swivel::python
 
 namespace pybind11::detail {
+
+template <swivel::python::Words kType, class Base>
+struct handle_type_name<swivel::python::Typed<kType, Base>> {
+  static constexpr auto name = const_name(kType.text);
+};
+template <class E>
+struct handle_type_name<swivel::python::OrName<E>> {
+  static constexpr auto name = const_name("Union[") + make_caster<E>::name + const_name(", str]");
+};
 
 template <>
 struct type_caster<swivel::Pose> {

@@ -16,6 +16,7 @@ namespace swivel::python {
 
 namespace {
 
+using Strokes = Typed<"Iterable[Stroke]", py::iterable>;
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 Doubles to_doubles(py::handle source, const char* what, const char* allowed) {
@@ -55,8 +56,8 @@ std::vector<double> to_feed(py::handle source) {
   const Doubles feed = to_doubles(source, "feed", "one number for each waypoint, m/s, or None");
   return {feed.data(), feed.data() + feed.size()};
 }
-py::object from_feed(const std::vector<double>& feed) {
-  if (feed.empty()) return py::none();
+std::optional<py::array_t<double>> from_feed(const std::vector<double>& feed) {
+  if (feed.empty()) return {};
   return py::array_t<double>(static_cast<py::ssize_t>(feed.size()), feed.data());
 }
 
@@ -85,10 +86,11 @@ void bind_stroke(py::module_& m) {
   type.def(pickling<Stroke>());
   type.def(py::init([](std::string name, std::vector<Waypoint> waypoints, std::string frame,
                        const std::optional<PathSmoothing>& smooth, bool reversible,
-                       py::handle approach, py::handle retract, std::optional<double> process_speed,
-                       std::optional<double> approach_speed, py::handle feed,
-                       const std::optional<Limits>& limits,
-                       const std::optional<Resolution>& resolution, py::handle end, bool closed) {
+                       const ArrayLike& approach, const ArrayLike& retract,
+                       std::optional<double> process_speed, std::optional<double> approach_speed,
+                       const ArrayLike& feed, const std::optional<Limits>& limits,
+                       const std::optional<Resolution>& resolution, const ArrayLike& end,
+                       bool closed) {
              return Stroke{std::move(name),
                            std::move(waypoints),
                            std::move(frame),
@@ -130,28 +132,30 @@ void bind_stroke(py::module_& m) {
                      "Whether the tool may run from the last waypoint to the first.")
       .def_property(
           "approach", [](const Stroke& stroke) { return stroke.approach; },
-          [](Stroke& stroke, py::handle from) {
+          [](Stroke& stroke, const OptionalArray& from) {
             stroke.approach = to_own_offset(from, "approach");
           },
           "From where the tool comes: (3,), m in the tool frame of the first waypoint, or None. A "
           "copy; assign it, or m against the tool's z axis, to change it.")
       .def_property(
           "retract", [](const Stroke& stroke) { return stroke.retract; },
-          [](Stroke& stroke, py::handle to) { stroke.retract = to_own_offset(to, "retract"); },
+          [](Stroke& stroke, const OptionalArray& to) {
+            stroke.retract = to_own_offset(to, "retract");
+          },
           "Where the tool goes, alike, in the tool frame of the last waypoint.")
       .def_readwrite("process_speed", &Stroke::process_speed, "m/s along the stroke, or None.")
       .def_readwrite("approach_speed", &Stroke::approach_speed,
                      "m/s along approach and retract, or None.")
       .def_property(
           "feed", [](const Stroke& stroke) { return from_feed(stroke.feed); },
-          [](Stroke& stroke, py::handle feed) { stroke.feed = to_feed(feed); },
+          [](Stroke& stroke, const OptionalArray& feed) { stroke.feed = to_feed(feed); },
           "(n,), m/s from each waypoint on, instead of process_speed, or None. A copy; assign to "
           "change it.")
       .def_readwrite("limits", &Stroke::limits, "Instead of those of the job, or None.")
       .def_readwrite("resolution", &Stroke::resolution, "Instead of that of the job, or None.")
       .def_property(
           "end", [](const Stroke& stroke) { return stroke.end; },
-          [](Stroke& stroke, py::handle end) { stroke.end = to_posture(end, "end"); },
+          [](Stroke& stroke, const OptionalArray& end) { stroke.end = to_posture(end, "end"); },
           "(7,) joints to end in after the retract, rad, or None. A copy; assign to change it.")
       .def_readwrite("closed", &Stroke::closed,
                      "Whether the run must end in the joints in which it begins.")
@@ -277,10 +281,11 @@ void bind_job(py::module_& m) {
       "`strokes` says.");
   make_copyable(type);
   type.def(pickling<Job>());
-  type.def(py::init([](const Robot& robot, const py::iterable& strokes, const py::iterable& scene,
+  type.def(py::init([](const Robot& robot, const Strokes& strokes, const SceneObjects& scene,
                        const Limits& limits, const Resolution& resolution, const Cost& cost,
-                       const Refinement& refinement, py::handle home, py::handle order,
-                       py::handle approach, py::handle retract, std::optional<double> process_speed,
+                       const Refinement& refinement, const ArrayLike& home,
+                       const OrName<StrokeOrder>& order, const ArrayLike& approach,
+                       const ArrayLike& retract, std::optional<double> process_speed,
                        std::optional<double> approach_speed, double rapid,
                        const std::optional<LiftOffs>& lift) {
              Job job;
@@ -317,8 +322,8 @@ void bind_job(py::module_& m) {
       .def_property_readonly(
           "robot", [](const Job& job) { return Robot(job); }, "A copy.")
       .def_property(
-          "strokes", [](const Job& job) { return job.strokes; },
-          [](Job& job, const py::iterable& strokes) { job.strokes = py::list(strokes); },
+          "strokes", [](const Job& job) -> Typed<"list[Stroke]"> { return job.strokes; },
+          [](Job& job, const Strokes& strokes) { job.strokes = py::list(strokes); },
           "A list of Strokes, changed in place.")
       .def_readwrite("limits", &Job::limits,
                      "Of transitions, and of strokes that have none of their own.")
@@ -327,21 +332,23 @@ void bind_job(py::module_& m) {
       .def_readwrite("refinement", &Job::refinement)
       .def_property(
           "home", [](const Job& job) { return job.home; },
-          [](Job& job, py::handle home) { job.home = to_home(home); },
+          [](Job& job, const OptionalArray& home) { job.home = to_home(home); },
           "(7,), rad, where the job begins and ends, or None: at its strokes. A copy; assign to "
           "change it.")
       .def_property(
           "order", [](const Job& job) { return job.order; },
-          [](Job& job, py::handle order) { job.order = to_enum<StrokeOrder>(order); },
+          [](Job& job, const OrName<StrokeOrder>& order) {
+            job.order = to_enum<StrokeOrder>(order);
+          },
           "StrokeOrder.")
       .def_property(
           "approach", [](const Job& job) { return job.approach; },
-          [](Job& job, py::handle from) { job.approach = to_offset(from, "approach"); },
+          [](Job& job, const ArrayLike& from) { job.approach = to_offset(from, "approach"); },
           "From where the tool comes to strokes that do not say it: (3,), m in the tool frame; 0: "
           "no line. A copy; assign it, or m against the tool's z axis, to change it.")
       .def_property(
           "retract", [](const Job& job) { return job.retract; },
-          [](Job& job, py::handle to) { job.retract = to_offset(to, "retract"); },
+          [](Job& job, const ArrayLike& to) { job.retract = to_offset(to, "retract"); },
           "Where the tool goes after them, alike.")
       .def_readwrite("process_speed", &Job::process_speed,
                      "m/s along strokes, or None: limits.tool_speed.")

@@ -346,8 +346,8 @@ const char* const kSpeeds =
 void bind_plan_job(py::module_& m) {
   m.def(
       "plan_job",
-      [](const JobOrFile& job, const py::object& planner, int threads,
-         std::optional<double> timeout, bool prove, bool evidence, const py::object& progress,
+      [](const JobOrFile& job, const OrName<PlannerKind>& planner, int threads,
+         std::optional<double> timeout, bool prove, bool evidence, const ProgressCallback& progress,
          std::optional<double> speed, std::optional<double> turn_speed,
          std::optional<double> rate) {
         PlanOptions options = to_plan_options(planner, threads, timeout, prove);

@@ -15,12 +15,13 @@ namespace {
 using Rows = std::vector<TrajectoryRow>;
 
 template <class Value>
-py::object or_none(bool given, const Value& value) {
-  return given ? py::object(py::cast(value)) : py::none();
+std::optional<Value> or_none(bool given, const Value& value) {
+  return given ? std::optional(value) : std::nullopt;
 }
-py::object bodies_or_none(const std::optional<std::array<std::string, 2>>& bodies) {
-  if (!bodies) return py::none();
-  return py::make_tuple((*bodies)[0], (*bodies)[1]);
+std::optional<std::pair<std::string, std::string>> bodies_or_none(
+    const std::optional<std::array<std::string, 2>>& bodies) {
+  if (!bodies) return {};
+  return std::pair((*bodies)[0], (*bodies)[1]);
 }
 
 const std::string& name_of(const swivel::Problem& job, const StrokeRun& run) {
@@ -37,16 +38,16 @@ std::optional<double> gap_of(const Answer& result) {
 }
 
 /// Returns the runs between which no transition was found: their names, None for home.
-py::object no_transition_of(const JobPlan& plan) {
-  const Answer& result = plan.result();
-  if (!result.arm().no_transition) return py::none();
-  const std::size_t to = result.arm().no_transition->to;
+std::optional<std::pair<std::optional<std::string>, std::optional<std::string>>> no_transition_of(
+    const JobPlan& plan) {
+  const ArmAnswer& result = plan.result().arm();
+  if (!result.no_transition) return {};
+  const std::size_t to = result.no_transition->to;
   const auto name = [&](std::size_t k) {
-    return or_none(k < result.arm().runs.size(), k < result.arm().runs.size()
-                                                     ? name_of(*plan.job, result.arm().runs[k].run)
-                                                     : "");
+    return or_none(k < result.runs.size(),
+                   k < result.runs.size() ? name_of(*plan.job, result.runs[k].run) : std::string());
   };
-  return py::make_tuple(to == 0 ? py::none() : name(to - 1), name(to));
+  return std::pair(to == 0 ? std::nullopt : name(to - 1), name(to));
 }
 
 std::vector<JobRun> runs_of(const JobPlan& plan) {
@@ -166,8 +167,8 @@ void bind_part(py::module_& m) {
                       "A part of a job: a run of a stroke, or a transition, in which the joints "
                       "move straight from row to row.")
       .def(pickling<JobPart>())
-      .def(py::init([](const py::object& rows, std::optional<std::string> stroke, bool reversed,
-                       double begin) {
+      .def(py::init([](const Typed<"Trajectory | ArrayLike">& rows,
+                       std::optional<std::string> stroke, bool reversed, double begin) {
              const Trajectory trajectory = to_trajectory(rows);
              if (stroke && !py::isinstance<Trajectory>(rows))
                throw py::value_error("rows: of a stroke allowed is a Trajectory");
@@ -204,8 +205,8 @@ void bind_part(py::module_& m) {
           "(n, 7) float64, rad: those of the trajectory.")
       .def_property_readonly(
           "process",
-          [](const JobPart& x) -> py::object {
-            if (x.process.size() != x.rows->size()) return py::none();
+          [](const JobPart& x) -> std::optional<py::array_t<bool>> {
+            if (x.process.size() != x.rows->size()) return {};
             py::array_t<bool> process(static_cast<py::ssize_t>(x.process.size()));
             std::copy(x.process.begin(), x.process.end(), process.mutable_data());
             return process;
@@ -340,7 +341,8 @@ void bind_plan(py::module_& m) {
           "The two bodies in the way there, or None.")
       .def_property_readonly(
           "barred_where",
-          [](const JobPlan& p) -> std::optional<std::string> {
+          [](const JobPlan& p)
+              -> std::optional<Typed<"Literal['between', 'home', 'end', 'begin']">> {
             const auto& none = p.result().arm().no_transition;
             if (!none) return {};
             return to_string(none->where);
@@ -373,8 +375,7 @@ void bind_plan(py::module_& m) {
           "counters", [](const JobPlan& p) { return counters_of(p.result().arm().counters); },
           "Work done, by name.")
       .def_property_readonly(
-          "transition_counters",
-          [](const JobPlan& p) {
+          "transition_counters", [](const JobPlan& p) -> Typed<"dict[str, int]"> {
             const TransitionCounters& t = p.result().arm().transitions;
             py::dict all;
             all["pairs"] = t.pairs, all["searches"] = t.searches, all["rounds"] = t.rounds;
@@ -407,25 +408,25 @@ void bind_plan(py::module_& m) {
 // --- motion
 
 template <class Number>
-py::array timed_column(const JobMotion& motion, Number TimedRow::*member) {
+py::array_t<Number> timed_column(const JobMotion& motion, Number TimedRow::*member) {
   const auto m = motion.motion();
   const std::shared_ptr<const std::vector<TimedRow>> rows(m, &m->rows);
   return column(rows, rows->empty() ? nullptr : &(rows->front().*member));
 }
-py::array timed_joints(const JobMotion& motion, const Config TimedRow::*member) {
+py::array_t<double> timed_joints(const JobMotion& motion, const Config TimedRow::*member) {
   const auto m = motion.motion();
   const std::shared_ptr<const std::vector<TimedRow>> rows(m, &m->rows);
   return column(rows, rows->empty() ? nullptr : (rows->front().*member).data(), kDof);
 }
 template <class Number>
-py::array placed_column(const JobMotion& motion, Number TrajectoryRow::*member) {
+py::array_t<Number> placed_column(const JobMotion& motion, Number TrajectoryRow::*member) {
   const auto m = motion.motion();
   const std::shared_ptr<const std::vector<TimedRow>> rows(m, &m->rows);
   return column(rows, rows->empty() ? nullptr : &(rows->front().row.*member));
 }
 
 /// Returns the last joint of all rows, which is the roll of arms of six joints.
-py::array last_joint(const JobMotion& motion) {
+py::array_t<double> last_joint(const JobMotion& motion) {
   const auto m = motion.motion();
   const std::shared_ptr<const std::vector<TimedRow>> rows(m, &m->rows);
   return column(rows, rows->empty() ? nullptr : &rows->front().row.q[kDof - 1]);
@@ -485,10 +486,10 @@ void bind_motion(py::module_& m) {
                              [](const JobMotion& x) { return x.timing->motion.has_value(); })
       .def_property_readonly(
           "reason",
-          [](const JobMotion& x) -> py::object {
-            if (!x.fault.empty()) return py::str(x.fault);
-            if (!x.timing->failure) return py::none();
-            return py::str(part_words(x, x.timing->failed_part) + ": " + x.timing->failure->reason);
+          [](const JobMotion& x) -> std::optional<std::string> {
+            if (!x.fault.empty()) return x.fault;
+            if (!x.timing->failure) return {};
+            return part_words(x, x.timing->failed_part) + ": " + x.timing->failure->reason;
           },
           "Why it is not executable, with the part, or None.")
       .def_property_readonly(

@@ -14,17 +14,18 @@ PYBIND11_MODULE(_swivel, m) {
   py::register_exception<swivel::InvalidArgument>(m, "InvalidArgument", PyExc_ValueError).doc() =
       "A value that no problem may have: one line that names the member, its value, and what is "
       "allowed.";
+  // Signatures can name only types that are bound before them.
   swivel::python::bind_problem(m);
+  swivel::python::bind_job(m);
   swivel::python::bind_results(m);
   swivel::python::bind_states(m);
   swivel::python::bind_planner(m);
-  swivel::python::bind_job(m);
-  swivel::python::bind_runs(m);
   swivel::python::bind_job_results(m);
   swivel::python::bind_job_functions(m);
   swivel::python::bind_workcell(m);
   swivel::python::bind_drawings(m);
   swivel::python::bind_certificates(m);
+  swivel::python::bind_runs(m);
   swivel::python::bind_job_drawings(m);
   py::module_::import("atexit").attr("register")(
       py::cpp_function(&swivel::python::UnderWay::end_all));

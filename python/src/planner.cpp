@@ -168,7 +168,7 @@ TimingOptions timing_of(const PathProblem& problem, std::optional<double> speed,
 }
 
 PathProblem problem_of(const Robot& robot, const std::optional<Task>& task,
-                       const py::iterable& scene) {
+                       const SceneObjects& scene) {
   PathProblem problem;
   static_cast<Robot&>(problem) = robot;
   if (task) static_cast<Task&>(problem) = *task;
@@ -294,7 +294,7 @@ class SharedPlanner {
           return swivel::measure(robot, problem, *trajectory.rows, Evidence::all(), budget);
         });
   }
-  Clearances clearance(const py::handle& joints, std::optional<double> timeout) {
+  Clearances clearance(const ArrayLike& joints, std::optional<double> timeout) {
     const std::vector<Config> states = to_states(joints);
     return {std::make_shared<const StateClearances>(prepared(
         [&](const PreparedRobot& robot, const PathProblem& problem, const Budget& budget) {
@@ -397,7 +397,7 @@ void bind_planner(py::module_& m) {
            py::arg("problem"), "Raises TypeError: plan_job() plans jobs.")
       .def(
           py::init(
-              [](const Robot& robot, const std::optional<Task>& task, const py::iterable& scene) {
+              [](const Robot& robot, const std::optional<Task>& task, const SceneObjects& scene) {
                 return std::make_unique<SharedPlanner>(Planner(problem_of(robot, task, scene)));
               }),
           py::arg("robot"), py::arg("task") = py::none(), py::arg("scene") = py::tuple(),
@@ -420,7 +420,7 @@ void bind_planner(py::module_& m) {
       .def("set_task", &SharedPlanner::set_task, py::arg("task"))
       .def(
           "set_scene",
-          [](SharedPlanner& self, const py::iterable& scene) {
+          [](SharedPlanner& self, const SceneObjects& scene) {
             std::vector<SceneObject> objects;
             for (const py::handle object : scene)
               objects.push_back(object.cast<const SceneObject&>());
@@ -460,11 +460,11 @@ void bind_planner(py::module_& m) {
           py::arg("name"))
       .def(
           "plan",
-          [](SharedPlanner& self, py::object planner, int threads, std::optional<double> timeout,
-             bool prove, bool evidence, py::object check, py::object check_motions, py::object cost,
-             py::object progress, bool refine, std::optional<double> speed,
-             std::optional<double> turn_speed, std::optional<double> rate,
-             std::optional<double> chord) {
+          [](SharedPlanner& self, OrName<PlannerKind> planner, int threads,
+             std::optional<double> timeout, bool prove, bool evidence, Typed<"_Check"> check,
+             Typed<"_MotionCheck"> check_motions, Typed<"_Check"> cost, ProgressCallback progress,
+             bool refine, std::optional<double> speed, std::optional<double> turn_speed,
+             std::optional<double> rate, std::optional<double> chord) {
             const PlanKeywords keywords{std::move(planner),
                                         threads,
                                         timeout,

@@ -66,7 +66,8 @@ PythonShape from_shape(const Shape& shape) {
       shape);
 }
 
-Mesh mesh_of_arrays(py::handle vertices, py::handle triangles, const std::string& name) {
+Mesh mesh_of_arrays(const ArrayLike& vertices, const ArrayLike& triangles,
+                    const std::string& name) {
   const Array points = to_array(vertices, "vertices of shape (n, 3), m");
   const auto corners =
       py::array_t<int, py::array::c_style | py::array::forcecast>::ensure(triangles);
@@ -211,7 +212,7 @@ ArmModel arm_of(const Robot& robot) {
 }
 
 /// Returns the tool poses of joints, rad: (4, 4) for (7,), and (n, 4, 4) for (n, 7).
-py::array_t<double> tool_poses(const Robot& robot, py::handle joints) {
+py::array_t<double> tool_poses(const Robot& robot, const ArrayLike& joints) {
   const py::array_t<double> states = to_joints(joints, "joints");
   const Chain chain = arm_of(robot).chain;
   const py::ssize_t count = states.shape(0);
@@ -255,7 +256,7 @@ std::size_t find_object(const Scene& scene, const std::string& name) {
                       (known.empty() ? "" : ", nearest is '" + nearest_name(name, known) + "'"));
 }
 
-Scene to_scene(const py::iterable& objects) {
+Scene to_scene(const SceneObjects& objects) {
   Scene scene;
   for (const py::handle object : objects) scene.push_back(object.cast<const SceneObject&>());
   return scene;
@@ -295,7 +296,7 @@ void bind_shapes(py::module_& m) {
         "Of the part between the two caps, m.");
   py::class_<Mesh>(m, "Mesh", "Triangles. A closed surface is a solid, an open one has no inside.")
       .def(pickling<Mesh>())
-      .def(py::init([](const std::filesystem::path& file, const py::object& scale) {
+      .def(py::init([](const std::filesystem::path& file, const Typed<"float | ArrayLike">& scale) {
              io::MeshCache cache;
              return Mesh{io::load_mesh(file, to_scale(scale), cache)};
            }),
@@ -339,7 +340,7 @@ void bind_robot(py::module_& m) {
                  return AttachedBody{std::move(name), to_shape(shape), pose, std::move(link)};
                }),
            py::arg("name"), py::arg("shape"), py::arg("link"),
-           py::arg("pose") = Pose(Pose::Identity()), "pose: of the shape in the frame of `link`.")
+           py::arg("pose") = py::make_tuple(0, 0, 0), "pose: of the shape in the frame of `link`.")
       .def_readonly("name", &AttachedBody::name)
       .def_property_readonly("shape",
                              [](const AttachedBody& body) { return from_shape(body.shape); })
@@ -488,7 +489,7 @@ void bind_scene(py::module_& m) {
                        const AllowedBodies& allow) {
              return SceneObject{std::move(name), to_shape(shape), pose, to_allowed(allow)};
            }),
-           py::arg("name"), py::arg("shape"), py::arg("pose") = Pose(Pose::Identity()),
+           py::arg("name"), py::arg("shape"), py::arg("pose") = py::make_tuple(0, 0, 0),
            py::arg("allow") = AllowedBodies{},
            "pose: in the base frame. allow: links and attached bodies that may touch it, or {name: "
            "how deep, m}; None: however "
@@ -539,7 +540,7 @@ void bind_scene(py::module_& m) {
                                     "' is in the scene already: allowed is a name of its own");
             scene.push_back({std::move(name), to_shape(shape), pose, to_allowed(allow)});
           },
-          py::arg("name"), py::arg("shape"), py::arg("pose") = Pose(Pose::Identity()),
+          py::arg("name"), py::arg("shape"), py::arg("pose") = py::make_tuple(0, 0, 0),
           py::arg("allow") = AllowedBodies{},
           "pose: in the base frame. allow: links and attached bodies that may touch it, or {name: "
           "how deep, m}; None: however "
@@ -571,12 +572,12 @@ void bind_scene(py::module_& m) {
           },
           py::arg("name"))
       .def("__len__", [](const Scene& scene) { return scene.size(); })
-      .def("__iter__",
-           [](const Scene& scene) {
-             py::list objects;  // copies, as the scene may change meanwhile
-             for (const SceneObject& object : scene) objects.append(py::cast(object));
-             return py::iter(objects);
-           })
+      .def(
+          "__iter__", [](const Scene& scene) -> Typed<"Iterator[SceneObject]"> {
+            py::list objects;  // copies, as the scene may change meanwhile
+            for (const SceneObject& object : scene) objects.append(py::cast(object));
+            return py::iter(objects);
+          })
       .def("__repr__", [](const Scene& scene) {
         std::string text;
         for (const SceneObject& object : scene)
@@ -648,8 +649,8 @@ void bind_task(py::module_& m) {
   make_copyable(type);
   type.def(pickling<Task>());
   type.def(py::init([](std::vector<Waypoint> waypoints, std::string frame, const Limits& limits,
-                       const Resolution& resolution, py::handle start,
-                       std::optional<double> start_at, double start_tolerance, py::handle end,
+                       const Resolution& resolution, const ArrayLike& start,
+                       std::optional<double> start_at, double start_tolerance, const ArrayLike& end,
                        const Cost& cost, const std::optional<PathSmoothing>& smooth,
                        const Refinement& refinement, bool closed) {
              Task task;
@@ -687,13 +688,13 @@ void bind_task(py::module_& m) {
       .def_readwrite("limits", &Task::limits)
       .def_property(
           "start", [](const Task& task) { return task.start; },
-          [](Task& task, py::handle start) { task.start = to_posture(start, "start"); },
+          [](Task& task, const OptionalArray& start) { task.start = to_posture(start, "start"); },
           "(7,) joints to begin with, rad, or None. A copy; assign to change it.")
       .def_readwrite("start_at", &Task::start_at, "m along the path, or None.")
       .def_readwrite("start_tolerance", &Task::start_tolerance, "m and rad.")
       .def_property(
           "end", [](const Task& task) { return task.end; },
-          [](Task& task, py::handle end) { task.end = to_posture(end, "end"); },
+          [](Task& task, const OptionalArray& end) { task.end = to_posture(end, "end"); },
           "(7,) joints to end in, rad, or None. A copy; assign to change it.")
       .def_readwrite("closed", &Task::closed,
                      "Whether the path must end in the joints in which it begins.")
@@ -810,9 +811,8 @@ py::array_t<double> to_joints(py::handle source, const char* what) {
 }
 
 void bind_problem(py::module_& m) {
-  m.def("pose", &make_pose, py::arg("xyz") = Vector3d(Vector3d::Zero()),
-        py::arg("rpy") = py::none(), py::arg("quat") = py::none(), py::arg("axis") = py::none(),
-        py::arg("tangent") = py::none(),
+  m.def("pose", &make_pose, py::arg("xyz") = py::make_tuple(0, 0, 0), py::arg("rpy") = py::none(),
+        py::arg("quat") = py::none(), py::arg("axis") = py::none(), py::arg("tangent") = py::none(),
         "A pose as a (4, 4) array. xyz: m. rpy: roll, pitch, yaw about the fixed axes x, y, z, "
         "rad, as in a URDF. quat: w x y z, of\n"
         "any length but 0. axis: direction of the z axis, against a surface's outward normal; x "
@@ -828,7 +828,7 @@ void bind_problem(py::module_& m) {
   make_copyable(type);
   type.def(pickling<PathProblem>());
   type.def(
-          py::init([](const Robot& robot, const Task& task, const py::iterable& scene) {
+          py::init([](const Robot& robot, const Task& task, const SceneObjects& scene) {
             PathProblem problem;
             static_cast<Robot&>(problem) = robot;
             static_cast<Task&>(problem) = task;

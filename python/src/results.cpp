@@ -18,18 +18,19 @@ namespace {
 using Rows = std::vector<TrajectoryRow>;
 
 template <class Row, class Number>
-py::array member_column(const std::shared_ptr<const std::vector<Row>>& rows, Number Row::*member) {
+py::array_t<Number> member_column(const std::shared_ptr<const std::vector<Row>>& rows,
+                                  Number Row::*member) {
   return column(rows, rows->empty() ? nullptr : &(rows->front().*member));
 }
-py::array joints_of(const std::shared_ptr<const Rows>& rows) {
+py::array_t<double> joints_of(const std::shared_ptr<const Rows>& rows) {
   return column(rows, rows->empty() ? nullptr : rows->front().q.data(), kDof);
 }
 template <class Number>
-py::array timed_column(const Motion& motion, Number TrajectoryRow::*member) {
+py::array_t<Number> timed_column(const Motion& motion, Number TrajectoryRow::*member) {
   const auto rows = motion.rows();
   return column(rows, rows->empty() ? nullptr : &(rows->front().row.*member));
 }
-py::array timed_joints(const Motion& motion, const Config TimedRow::*member) {
+py::array_t<double> timed_joints(const Motion& motion, const Config TimedRow::*member) {
   const auto rows = motion.rows();
   return column(rows, rows->empty() ? nullptr : (rows->front().*member).data(), kDof);
 }
@@ -52,8 +53,9 @@ bool last_joint_is_roll(const io::JointNames& names) {
   return names[kDof - 1] == "roll";
 }
 
-Trajectory make_trajectory(py::handle joints, py::handle s, py::handle phi, py::handle branch,
-                           const std::vector<std::string>& names, py::handle roll) {
+Trajectory make_trajectory(const ArrayLike& joints, const ArrayLike& s, const ArrayLike& phi,
+                           const ArrayLike& branch, const std::vector<std::string>& names,
+                           const ArrayLike& roll) {
   const auto q = to_joints(joints, "joints");
   using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
   const auto numbers = [&](py::handle source, const char* name) {
@@ -97,8 +99,9 @@ void save_trajectory(const Trajectory& trajectory, const std::filesystem::path& 
   io::write_trajectory(csv, result);
 }
 
-py::object load_trajectory(const std::filesystem::path& name, const std::vector<std::string>& names,
-                           const PathProblem* problem) {
+std::variant<Trajectory, Motion> load_trajectory(const std::filesystem::path& name,
+                                                 const std::vector<std::string>& names,
+                                                 const PathProblem* problem) {
   const io::JointNames joint_names = to_joint_names(names);
   io::TrajectoryFile file = io::load_trajectory_file(name, joint_names);
   const bool timed = !file.timed.empty();
@@ -113,17 +116,16 @@ py::object load_trajectory(const std::filesystem::path& name, const std::vector<
     else
       file.rows = complete_rows(robot, *problem, std::move(file.rows), file.stated);
   }
-  if (!timed)
-    return py::cast(Trajectory{std::make_shared<const Rows>(std::move(file.rows)), joint_names});
+  if (!timed) return Trajectory{std::make_shared<const Rows>(std::move(file.rows)), joint_names};
   auto timing = std::make_shared<TimingResult>();
   TimedPath& path = timing->motion.emplace();
   path.duration = file.timed.back().t;
   path.rate = static_cast<double>(file.timed.size() - 1) / (path.duration - file.timed.front().t);
   path.rows = std::move(file.timed);
-  return py::cast(Motion{std::move(timing), joint_names, ""});
+  return Motion{std::move(timing), joint_names, ""};
 }
 
-py::dict peaks_of(const Motion& motion) {
+Typed<"dict[str, _Array]"> peaks_of(const Motion& motion) {
   const char* const names[] = {"speed", "acceleration", "jerk"};
   py::dict peaks;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -174,23 +176,20 @@ std::vector<std::pair<std::string, E>> names_from(E first, E last) {
   return names;
 }
 
-/// Returns a pair of names; None if both are empty.
-py::object bodies_of(const std::array<std::string, 2>& bodies) {
-  if (bodies[0].empty() && bodies[1].empty()) return py::none();
-  return py::make_tuple(bodies[0], bodies[1]);
+std::pair<std::string, std::string> bodies_of(const std::array<std::string, 2>& bodies) {
+  return {bodies[0], bodies[1]};
 }
 /// Returns a distance from a limit with its unit: degrees, or mm of a joint that slides.
 std::string distance_words(const NearestLimit& limit) {
   return limit.slides ? formatted("%.2f mm", 1e3 * limit.margin)
                       : formatted("%.2f deg", limit.margin * 180 / kPi);
 }
-py::object or_none(const std::string& text) {
-  if (text.empty()) return py::none();
-  return py::str(text);
+std::optional<std::string> or_none(const std::string& text) {
+  return text.empty() ? std::nullopt : std::optional(text);
 }
-py::object pair_or_none(int first, int last) {
-  if (first < 0 && last < 0) return py::none();
-  return py::make_tuple(first, last);
+std::optional<std::pair<int, int>> pair_or_none(int first, int last) {
+  if (first < 0 && last < 0) return {};
+  return std::pair(first, last);
 }
 
 void bind_measures(py::module_& m) {
@@ -271,27 +270,30 @@ void bind_measures(py::module_& m) {
       .def_property_readonly(
           "tool_path_error_mm",
           [](const Measures& x) {
-            return x.evidence.tool_path_error ? py::cast(x.tool_path_error_mm)
-                                              : py::object(py::none());
+            return x.evidence.tool_path_error ? std::optional(x.tool_path_error_mm) : std::nullopt;
           },
           "ToolPathError.")
       .def_readonly("min_clearance", &Measures::min_clearance, "Of the nearest pair on any row, m.")
       .def_property_readonly(
           "min_clearance_status",
-          [](const Measures& x) { return to_string(x.min_clearance_status()); },
+          [](const Measures& x) -> MeasureStatusName {
+            return to_string(x.min_clearance_status());
+          },
           "Of min_clearance and min_margin: 'measured', 'none' (no pair is near) or "
           "'not_measured' (not asked for, or time ran out).")
       .def_readonly("min_margin", &Measures::min_margin, "LeastMargin.")
       .def_readonly("deepest_contact", &Measures::deepest_contact, "DeepestContact.")
       .def_property_readonly(
           "deepest_contact_status",
-          [](const Measures& x) { return to_string(x.deepest_contact_status()); },
+          [](const Measures& x) -> MeasureStatusName {
+            return to_string(x.deepest_contact_status());
+          },
           "'measured', 'none' (no allowed pair was found to touch) or 'not_measured' (not asked "
           "for, or time ran out).")
       .def_property_readonly(
           "min_manipulability",
           [](const Measures& x) {
-            return x.evidence.postures ? py::cast(x.min_manipulability) : py::object(py::none());
+            return x.evidence.postures ? std::optional(x.min_manipulability) : std::nullopt;
           },
           "Least sqrt(det(J J^T)).")
       .def_property_readonly(
@@ -347,7 +349,12 @@ void bind_verdicts(py::module_& m) {
                     "Of a limit: the joint can follow only beyond the end of its range, where it "
                     "would have to unwind by a turn.")
       .def_property_readonly(
-          "bodies", [](const Cause& c) { return bodies_of(c.bodies); }, "Of pairs: two names.")
+          "bodies",
+          [](const Cause& c) {
+            const bool none = c.bodies[0].empty() && c.bodies[1].empty();
+            return none ? std::nullopt : std::optional(bodies_of(c.bodies));
+          },
+          "Of pairs: two names.")
       .def_readonly("between_layers", &Cause::between_layers)
       .def_property_readonly(
           "object", [](const Cause& c) { return or_none(c.object); },
@@ -373,10 +380,10 @@ void bind_verdicts(py::module_& m) {
                           "Layers, one after the other, that have no node left for one cause.")
       .def(pickling<EmptyLayers>())
       .def_property_readonly(
-          "layers", [](const EmptyLayers& e) { return py::make_tuple(e.first, e.last); },
+          "layers", [](const EmptyLayers& e) { return std::pair(e.first, e.last); },
           "First and last.")
       .def_property_readonly(
-          "s", [](const EmptyLayers& e) { return py::make_tuple(e.first_s, e.last_s); },
+          "s", [](const EmptyLayers& e) { return std::pair(e.first_s, e.last_s); },
           "m, first and last.")
       .def_property_readonly(
           "waypoints",
@@ -404,8 +411,7 @@ void bind_verdicts(py::module_& m) {
                     "What must go besides, where no single thing helps.")
       .def_readonly("empty_layers", &Diagnosis::empty_layers, "With evidence=True.")
       .def_property_readonly(
-          "removed",
-          [](const Diagnosis& d) {
+          "removed", [](const Diagnosis& d) -> Typed<"list[tuple[Cause, int]]"> {
             py::list all;
             for (const auto& [cause, count] : d.removed) all.append(py::make_tuple(cause, count));
             return all;
@@ -517,10 +523,10 @@ void bind_trajectory(py::module_& m) {
   py::class_<TimedPath::Slow>(m, "Slow", "A stretch that is slower than asked for.")
       .def(pickling<TimedPath::Slow>())
       .def_property_readonly(
-          "s", [](const TimedPath::Slow& x) { return py::make_tuple(x.from_s, x.to_s); },
+          "s", [](const TimedPath::Slow& x) { return std::pair(x.from_s, x.to_s); },
           "m, from and to.")
       .def_property_readonly(
-          "t", [](const TimedPath::Slow& x) { return py::make_tuple(x.from_t, x.to_t); },
+          "t", [](const TimedPath::Slow& x) { return std::pair(x.from_t, x.to_t); },
           "s, from and to.")
       .def_readonly("share", &TimedPath::Slow::share, "Of the speed asked for, at its slowest.")
       .def_readonly("joint", &TimedPath::Slow::joint, "Number of the joint that bounds it, from 0.")
@@ -544,13 +550,13 @@ void bind_trajectory(py::module_& m) {
       .def_property_readonly(
           "reason",
           [](const Motion& x) {
-            return x.timing->failure ? py::object(py::str(x.timing->failure->reason)) : py::none();
+            return x.timing->failure ? std::optional(x.timing->failure->reason) : std::nullopt;
           },
           "Why it is not executable, or None.")
       .def_property_readonly(
           "at_s",
           [](const Motion& x) {
-            return x.timing->failure ? py::object(py::float_(x.timing->failure->s)) : py::none();
+            return x.timing->failure ? std::optional(x.timing->failure->s) : std::nullopt;
           },
           "Where it is not, m, or None.")
       .def_property_readonly(
@@ -607,7 +613,7 @@ void bind_trajectory(py::module_& m) {
       .def_property_readonly(
           "between_samples",
           [](const Motion& x) {
-            return py::make_tuple(x.path().between_position, x.path().between_angle);
+            return std::pair(x.path().between_position, x.path().between_angle);
           },
           "How far the tool leaves its path between samples, m and rad.")
       .def_property_readonly("warnings", [](const Motion& x) { return x.path().warnings; })
@@ -680,9 +686,8 @@ void bind_plan(py::module_& m) {
       .def_property_readonly(
           "cost",
           [](const Plan& p) {
-            return p.result().status == PlanStatus::kSolved
-                       ? py::object(py::float_(p.result().cost))
-                       : py::none();
+            const bool solved = p.result().status == PlanStatus::kSolved;
+            return solved ? std::optional(p.result().cost) : std::nullopt;
           },
           "Of the trajectory, by the problem's metric; None unless solved.")
       .def_property_readonly(
@@ -810,7 +815,9 @@ void bind_plan(py::module_& m) {
           "m, of any pair at the rows.")
       .def_property_readonly(
           "min_clearance_status",
-          [](const Check& c) { return to_string(c.result.min_clearance_status); },
+          [](const Check& c) -> MeasureStatusName {
+            return to_string(c.result.min_clearance_status);
+          },
           "Of min_clearance and min_margin: 'measured', 'none' (no pair is near) or "
           "'not_measured' (no row could be examined).")
       .def_property_readonly(
@@ -821,19 +828,20 @@ void bind_plan(py::module_& m) {
           "DeepestContact.")
       .def_property_readonly(
           "deepest_contact_status",
-          [](const Check& c) { return to_string(c.result.deepest_contact_status); },
+          [](const Check& c) -> MeasureStatusName {
+            return to_string(c.result.deepest_contact_status);
+          },
           "'measured', 'none' (no allowed pair was found to touch) or 'not_measured' (a row has "
           "joints that are no numbers).")
       .def_property_readonly(
           "duration",
           [](const Check& c) {
-            return c.result.motion ? py::object(py::float_(c.result.motion->duration)) : py::none();
+            return c.result.motion ? std::optional(c.result.motion->duration) : std::nullopt;
           },
           "Of motions, s.")
       .def_property_readonly(
-          "peaks",
-          [](const Check& c) -> py::object {
-            if (!c.result.motion) return py::none();
+          "peaks", [](const Check& c) -> std::optional<Typed<"dict[str, float]">> {
+            if (!c.result.motion) return {};
             py::dict peaks;
             const char* const names[] = {"speed", "acceleration", "jerk"};
             for (std::size_t k = 0; k < 3; ++k) peaks[names[k]] = c.result.motion->peaks[k].ratio;
@@ -858,7 +866,7 @@ void bind_plan(py::module_& m) {
 
 }  // namespace
 
-py::dict counters_of(const Counters& c) {
+Typed<"dict[str, int]"> counters_of(const Counters& c) {
   py::dict all;
   all["ik_nodes"] = c.ik_nodes;
   all["edges"] = c.edges;

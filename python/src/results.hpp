@@ -49,9 +49,12 @@ struct Check {
   io::JointNames joint_names;
 };
 
+/// Whether there is a figure, as to_string() says it.
+using MeasureStatusName = Typed<"Literal['measured', 'none', 'not_measured']">;
+
 /// Throws ValueError if this build has no pages.
 void require_pages();
 /// Returns work done by name, as JSON names it.
-[[nodiscard]] py::dict counters_of(const Counters& c);
+[[nodiscard]] Typed<"dict[str, int]"> counters_of(const Counters& c);
 
 }  // namespace swivel::python

@@ -57,7 +57,7 @@ py::array_t<double> numbers(const Table<Row>& table, std::optional<double> Row::
   return array;
 }
 template <class Row, class Number>
-py::array plain(const Table<Row>& table, Number Row::*member) {
+py::array_t<Number> plain(const Table<Row>& table, Number Row::*member) {
   return column(table.rows, table.rows->empty() ? nullptr : &(table.rows->front().*member));
 }
 template <class Row>

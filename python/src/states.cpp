@@ -38,7 +38,7 @@ class Kinematics {
   [[nodiscard]] const auto& joint_names() const { return chain().joint_names; }
 
   /// Returns the free coordinate of each state, rad: (n,).
-  [[nodiscard]] py::array_t<double> coordinates(py::handle joints) const {
+  [[nodiscard]] py::array_t<double> coordinates(const ArrayLike& joints) const {
     const py::array_t<double> states = to_joints(joints, "joints");
     py::array_t<double> values(states.shape(0));
     for (py::ssize_t k = 0; k < states.shape(0); ++k) {
@@ -52,9 +52,8 @@ class Kinematics {
 
   /// Returns all joints that bring the tool to a pose at given values of the free coordinate: (n,
   /// 7), rad.
-  [[nodiscard]] py::array_t<double> ik(py::handle pose, const py::object& at, double step,
+  [[nodiscard]] py::array_t<double> ik(const Pose& tool, const ArrayLike& at, double step,
                                        bool limits, bool turns) const {
-    const Pose tool = to_pose(pose);
     if (!(step > 0 && step <= kTwoPi))
       throw py::value_error("step: allowed are numbers > 0, at most 2*pi, rad");
     std::vector<Config> found;

@@ -226,8 +226,7 @@ void bind_certificates(py::module_& m) {
       .def_property_readonly(
           "band",
           [](const InfeasibilityCertificate& x) {
-            return py::make_tuple(x.first_layer,
-                                  x.first_layer + static_cast<int>(x.band.size()) - 1);
+            return std::pair(x.first_layer, x.first_layer + static_cast<int>(x.band.size()) - 1);
           },
           "First and last layer of the band.")
       .def_readonly("causes", &InfeasibilityCertificate::witnesses,
@@ -263,7 +262,7 @@ void bind_certificates(py::module_& m) {
           },
           "The first fault, with layer and slot; None if it passed.")
       .def_property_readonly(
-          "s", [](const CertificateCheck& x) { return py::make_tuple(x.s[0], x.s[1]); },
+          "s", [](const CertificateCheck& x) { return std::pair(x.s[0], x.s[1]); },
           "m along the path: first and last layer of the band.")
       .def_readonly("complete", &CertificateCheck::complete,
                     "False: the proof covers only those solutions of the arm that were found.")

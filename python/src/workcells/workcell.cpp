@@ -72,8 +72,9 @@ std::vector<int> steps_of(const std::vector<int>& at_rows) {
   return steps;
 }
 
+using Arms = Typed<"dict[str, Problem | tuple[Robot, Trajectory]]", py::dict>;
 /// Makes a workcell of two arms, whose scene is that of the first that has a problem.
-Workcell make_workcell(const py::dict& arms, const std::vector<std::array<std::string, 2>>& touch,
+Workcell make_workcell(const Arms& arms, const std::vector<std::array<std::string, 2>>& touch,
                        const std::vector<int>& at_rows) {
   if (arms.size() != 2)
     throw py::value_error("arms: has " + std::to_string(arms.size()) +
@@ -189,12 +190,13 @@ void complete(const PreparedWorkcell& prepared, io::WorkcellRows& read,
   }
 }
 
-using Checked = std::variant<WorkcellPlan, WorkcellMotion, py::dict, std::filesystem::path>;
+using RowsByName = Typed<"dict[str, Trajectory] | dict[str, Motion]", py::dict>;
+using Checked = std::variant<WorkcellPlan, WorkcellMotion, RowsByName, std::filesystem::path>;
 WorkcellCheck check(const WorkcellOrFile& of, const Checked& rows) {
   const auto cell = to_core(of);
   const auto names = names_of(*cell);
   io::WorkcellRows given;
-  if (const auto* const dict = std::get_if<py::dict>(&rows)) given = rows_of(*dict, names);
+  if (const auto* const dict = std::get_if<RowsByName>(&rows)) given = rows_of(*dict, names);
   if (const auto* const motion = std::get_if<WorkcellMotion>(&rows))
     for (std::size_t k = 0; k < 2; ++k) given.timed[k] = motion->motion().arms[k].rows;
   if (const auto* made = std::get_if<WorkcellPlan>(&rows)) given.rows = rows_of_arms(*made->plan);
@@ -297,11 +299,14 @@ void bind_plan(py::module_& m) {
           },
           "Of the arms by themselves; inf: it has no path.")
       .def_property_readonly(
-          "decided_by", [](const WorkcellPlan& p) { return to_string(p.plan->pair.decided_by); },
+          "decided_by",
+          [](const WorkcellPlan& p)
+              -> Typed<"Literal['arms alone', 'regions', 'pairs of nodes', 'none']"> {
+            return to_string(p.plan->pair.decided_by);
+          },
           "'arms alone', 'regions', 'pairs of nodes', or 'none' where time was up.")
       .def_property_readonly(
-          "trajectories",
-          [](const WorkcellPlan& p) {
+          "trajectories", [](const WorkcellPlan& p) -> Typed<"dict[str, Trajectory]"> {
             py::dict all;
             if (p.plan->has_rows())
               for (std::size_t k = 0; k < 2; ++k)
@@ -333,7 +338,9 @@ void bind_plan(py::module_& m) {
           "Between bodies of both arms at rows, m, with evidence=True.")
       .def_property_readonly(
           "clearance_status",
-          [](const WorkcellPlan& p) { return to_string(p.plan->pair.nearest_status()); },
+          [](const WorkcellPlan& p) -> MeasureStatusName {
+            return to_string(p.plan->pair.nearest_status());
+          },
           "'measured', 'none' (no pair is near) or 'not_measured' (not asked for, or time ran "
           "out).")
       .def_property_readonly("time_ms", [](const WorkcellPlan& p) { return p.plan->time_ms; })
@@ -462,8 +469,7 @@ void bind_advice(py::module_& m) {
           "cell", [](const AdviceOnWorkcell& a) { return a.cell; },
           "Changes of the workcell, what helps first: a list of WorkcellAdvice.")
       .def_property_readonly(
-          "arms",
-          [](const AdviceOnWorkcell& a) {
+          "arms", [](const AdviceOnWorkcell& a) -> Typed<"dict[str, list[Advice]]"> {
             py::dict all;
             for (const ArmAdvice& one : a.arms) all[one.arm.c_str()] = py::cast(one.advice);
             return all;
@@ -521,8 +527,8 @@ void bind_workcell(py::module_& m) {
   bind_workcell_motion(m);
   m.def(
       "plan_workcell",
-      [](const WorkcellOrFile& workcell, const py::object& planner, int threads,
-         std::optional<double> timeout, bool prove, bool evidence, const py::object& progress,
+      [](const WorkcellOrFile& workcell, const OrName<PlannerKind>& planner, int threads,
+         std::optional<double> timeout, bool prove, bool evidence, const ProgressCallback& progress,
          std::optional<double> speed, std::optional<double> turn_speed, std::optional<double> rate,
          bool refine) {
         PlanOptions options = to_plan_options(planner, threads, timeout, prove);

@@ -84,7 +84,7 @@ WorkcellMotion time(const WorkcellOrFile& of, const WorkcellTrajectories& rows,
   std::array<std::vector<TrajectoryRow>, 2> given;
   if (const auto* const plan = std::get_if<WorkcellPlan>(&rows))
     given = untimed_rows(*plan);
-  else if (const auto* const dict = std::get_if<py::dict>(&rows))
+  else if (const auto* const dict = std::get_if<TrajectoriesByName>(&rows))
     given = untimed_rows(*dict, made.names);
   const auto* const file = std::get_if<std::filesystem::path>(&rows);
   return interruptible([&](const std::stop_token& stop) {
@@ -124,7 +124,7 @@ const swivel::Motion& WorkcellMotion::motion() const {
   return *timing->motion;
 }
 
-py::dict WorkcellMotion::motions() const {
+Typed<"dict[str, Motion]"> WorkcellMotion::motions() const {
   py::dict all;
   if (!timing || !timing->motion) return all;
   for (std::size_t k = 0; k < 2; ++k)
@@ -134,7 +134,7 @@ py::dict WorkcellMotion::motions() const {
   return all;
 }
 
-py::dict WorkcellMotion::refinements() const {
+Typed<"dict[str, Refined]"> WorkcellMotion::refinements() const {
   py::dict all;
   if (!refinement) return all;
   for (std::size_t k = 0; k < 2; ++k)

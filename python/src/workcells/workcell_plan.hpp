@@ -39,9 +39,9 @@ struct WorkcellMotion {
   /// Returns the motion. Throws ValueError if there is none.
   [[nodiscard]] const swivel::Motion& motion() const;
   /// Returns the motion of each arm by its name; none where there is none.
-  [[nodiscard]] py::dict motions() const;
+  [[nodiscard]] Typed<"dict[str, Motion]"> motions() const;
   /// Returns the refinement of each arm by its name; none where it was not asked for.
-  [[nodiscard]] py::dict refinements() const;
+  [[nodiscard]] Typed<"dict[str, Refined]"> refinements() const;
   /// Writes the motion in the format of the file's ending.
   void save(const std::filesystem::path& file) const;
 };
@@ -50,8 +50,9 @@ struct WorkcellMotion {
 using WorkcellOrFile = std::variant<const Workcell*, std::filesystem::path>;
 [[nodiscard]] std::shared_ptr<const swivel::Problem> to_core(const WorkcellOrFile& cell);
 
+using TrajectoriesByName = Typed<"dict[str, Trajectory]", py::dict>;
 /// The trajectories of both arms: a plan, name -> Trajectory, or the name of a CSV file.
-using WorkcellTrajectories = std::variant<WorkcellPlan, py::dict, std::filesystem::path>;
+using WorkcellTrajectories = std::variant<WorkcellPlan, TrajectoriesByName, std::filesystem::path>;
 /// Returns the rows of `name` -> Trajectory or Motion. Throws KeyError for an arm that is missing,
 /// and ValueError if one is a motion and the other is none.
 [[nodiscard]] io::WorkcellRows rows_of(const py::dict& rows,
