@@ -3,13 +3,13 @@
 """Prints the reference of the Python package as Markdown: signatures of its stubs, docstrings of
 the module.
 
-python_reference.py STUBS.pyi      the package must be importable (PYTHONPATH)
+python_reference.py      the package must be importable (PYTHONPATH)
 """
 import ast
 import importlib
 import inspect
+import pathlib
 import re
-import sys
 
 HEAD = """# Python reference
 
@@ -22,6 +22,12 @@ Examples: [embedding](docs/guide/embedding.md#python).
 |---|---|
 {aliases}
 """
+# Headings, by the first name below each.
+HEADINGS = {
+    "Sphere": "Problems", "LeastMargin": "Answers", "Kinematics": "Planning", "JobPart": "Jobs",
+    "Workcell": "Two arms", "Certificate": "Certificates",
+    "Placement": "Many plans of one problem", "TrajectoryRow": "Functions that plan in one call"
+}
 
 
 def meaning(thing):
@@ -31,7 +37,7 @@ def meaning(thing):
         part
         for part in text.split("\n\n")
         if not re.match(r"(\d+\. )?\w+\([^\n]*\) -> [^\n]+$", part)
-        and part != "Overloaded function."
+        and not part.endswith("Overloaded function.")
     ]
     return "\n\n".join(paragraphs).strip()
 
@@ -104,17 +110,11 @@ def members(node, thing):
 
 def main():
     package = importlib.import_module("swivel")
-    lines = open(sys.argv[1]).read().split("\n")
-    body = ast.parse("\n".join(lines)).body
+    body = ast.parse(pathlib.Path(package.__file__).with_suffix(".pyi").read_text()).body
     print(HEAD.format(doc=inspect.getdoc(package), aliases="\n".join(aliases(body))))
-    headings = {
-        number: line[6:].capitalize()
-        for number, line in enumerate(lines, 1)
-        if line.startswith("# --- ")
-    }
     for node in body:
-        for number in [number for number in headings if number < node.lineno]:
-            print(f"## {headings.pop(number)}\n")
+        if getattr(node, "name", "") in HEADINGS:
+            print(f"## {HEADINGS.pop(node.name)}\n")
         if isinstance(node, (ast.ClassDef, ast.FunctionDef)):
             thing = getattr(package, node.name)
             print(f"### {node.name}\n")
@@ -126,6 +126,8 @@ def main():
             print("\n".join(members(node, thing)))
         elif isinstance(node, ast.FunctionDef):
             print(f"```py\n{signature(node)}\n```\n\n{meaning(thing)}\n")
+    if HEADINGS:
+        raise SystemExit(f"HEADINGS: the package has no {', '.join(HEADINGS)}")
 
 
 main()

@@ -98,9 +98,7 @@ def copy_documents(pages):
 
 def python_reference():
     done = subprocess.run(
-        [sys.executable, ROOT / "docs/python_reference.py", ROOT / "python/swivel/__init__.pyi"],
-        capture_output=True,
-        text=True,
+        [sys.executable, ROOT / "docs/python_reference.py"], capture_output=True, text=True
     )
     if done.returncode == 0:
         return done.stdout

@@ -117,7 +117,7 @@ def information():
 
 
 def get_requires_for_build_wheel(config_settings=None):
-    return []
+    return ["numpy"]  # the build imports the package to write its type stubs
 
 
 def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):

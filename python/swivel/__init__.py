@@ -17,6 +17,8 @@ columns.
 A job of many strokes is loaded by load_job() and planned by plan_job(); Two arms are loaded by
 load_workcell() and planned by plan_workcell(). place() and campaign() take all three.
 """
+from __future__ import annotations as _annotations
+
 import os as _os
 
 import numpy as _np
@@ -81,23 +83,23 @@ def _planner(problem):
 
 
 def plan(
-    problem,
+    problem: Problem | _File,
     *,
-    planner="parallel",
-    threads=0,
-    timeout=None,
-    prove=True,
-    evidence=False,
-    check=None,
-    check_motions=None,
-    cost=None,
-    progress=None,
-    refine=False,
-    speed=None,
-    turn_speed=None,
-    rate=None,
-    chord=None,
-):
+    planner: _PlannerKind = "parallel",
+    threads: int = 0,
+    timeout: float | None = None,
+    prove: bool = True,
+    evidence: bool = False,
+    check: _Check | None = None,
+    check_motions: _MotionCheck | None = None,
+    cost: _Check | None = None,
+    progress: _Progress | None = None,
+    refine: bool = False,
+    speed: float | None = None,
+    turn_speed: float | None = None,
+    rate: float | None = None,
+    chord: float | None = None,
+) -> Plan:
     """Plans one problem, once.
 
     problem: a Problem, or the name of its file. The others are those of Planner.plan().
@@ -122,7 +124,7 @@ def plan(
     )
 
 
-def check(problem, trajectory):
+def check(problem: Problem | _File, trajectory: Trajectory | Motion) -> Check:
     """Proves a Trajectory or a Motion from the problem alone, as Planner.check() does.
 
     problem: a Problem, or the name of its file.
@@ -130,7 +132,7 @@ def check(problem, trajectory):
     return _planner(problem).check(trajectory)
 
 
-def measure(problem, trajectory):
+def measure(problem: Problem | _File, trajectory: Trajectory) -> Measures:
     """Measures what a trajectory comes near to and how well it follows its path.
 
     Arguments and result are those of Planner.measure(). problem: a Problem, or the name of its
@@ -139,7 +141,9 @@ def measure(problem, trajectory):
     return _planner(problem).measure(trajectory)
 
 
-def refine(problem, trajectory, *, timeout=None):
+def refine(
+    problem: Problem | _File, trajectory: Trajectory, *, timeout: float | None = None
+) -> Refined:
     """Moves the arm angles of a trajectory off the grid, as Planner.refine() does.
 
     problem: a Problem, or the name of its file. timeout: s, or None.
@@ -147,7 +151,11 @@ def refine(problem, trajectory, *, timeout=None):
     return _planner(problem).refine(trajectory, timeout=timeout)
 
 
-def time(problem, trajectory, *, speed=None, turn_speed=None, rate=250.0, chord=None, timeout=None):
+def time(
+    problem: Problem | _File, trajectory: Trajectory, *, speed: float | None = None,
+    turn_speed: float | None = None, rate: float = 250.0, chord: float | None = None,
+    timeout: float | None = None
+) -> Motion:
     """Makes a trajectory a motion in time, as Planner.time() does.
 
     problem: a Problem, or the name of its file. speed: of the tool, m/s; turn_speed: rad/s; without
@@ -158,7 +166,7 @@ def time(problem, trajectory, *, speed=None, turn_speed=None, rate=250.0, chord=
     )
 
 
-def advise(problem, plan, *, timeout=1.0):
+def advise(problem: Problem | _File, plan: Plan, *, timeout: float = 1.0) -> list[Advice]:
     """Finds changes that would help a problem that has no path, as Planner.advise() does.
 
     problem: a Problem, or the name of its file. plan: its Plan. timeout: s.
@@ -167,8 +175,9 @@ def advise(problem, plan, *, timeout=1.0):
 
 
 def compute_cartesian_path(
-    robot, scene, waypoints, start, *, max_step=0.005, limits=None, **options
-):
+    robot: Robot, scene: Iterable[SceneObject], waypoints: ArrayLike, start: ArrayLike | None, *,
+    max_step: float = 0.005, limits: Limits | None = None, **options: Any
+) -> tuple[float, Trajectory]:
     """Follows straight lines through waypoints from a given posture, as far as possible.
 
     robot: Robot. scene: Scene, or any sequence of SceneObjects. waypoints: poses of the tool in the

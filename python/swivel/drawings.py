@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Maps, pages and notebook views of plans, and certificates that there is no path."""
+from __future__ import annotations
+
 import base64
 import gzip
 import html
@@ -34,7 +36,10 @@ def _written(text, file):
     return None
 
 
-def report(problem, plan, file=None):
+def report(
+    problem: Problem | Job | Workcell | _File | None, plan: Plan | JobPlan | WorkcellPlan,
+    file: _File | None = None
+) -> str | Any:
     """Makes the page of a plan: what `swivel plan --report` writes, one HTML file.
 
     problem: the Problem, Job or Workcell that was planned, or the name of its file; None for the
@@ -53,7 +58,9 @@ def report(problem, plan, file=None):
     return _written(_swivel._draw(plan, _loaded(problem), True, False)[1], file)
 
 
-def map_svg(problem, plan, file=None, *, full=False):
+def map_svg(
+    problem: Problem | _File | None, plan: Plan, file: _File | None = None, *, full: bool = False
+) -> str | Any:
     """Draws the lattice map of a plan as SVG: what `swivel plan --map-svg` writes.
 
     problem, plan, file: as for report(). full: ask the clearance of every node, not only of those
@@ -64,7 +71,10 @@ def map_svg(problem, plan, file=None, *, full=False):
     return _written(_swivel._draw(plan, _loaded(problem), False, full)[0], file)
 
 
-def certificate(problem, *, planner="parallel", threads=0, timeout=None):
+def certificate(
+    problem: Problem | _File, *, planner: _PlannerKind = "parallel", threads: int = 0,
+    timeout: float | None = None
+) -> Certificate | None:
     """Proves that a problem has no path, as `swivel plan --certificate` does.
 
     problem: a Problem, or the name of its file. The others are those of Planner.plan().
@@ -74,7 +84,10 @@ def certificate(problem, *, planner="parallel", threads=0, timeout=None):
     return _swivel._certificate(_loaded(problem), planner, threads, timeout)
 
 
-def check_certificate(problem, certificate, *, timeout=None):
+def check_certificate(
+    problem: Problem | Job | _File, certificate: Certificate | _File, *,
+    timeout: float | None = None
+) -> CertificateCheck:
     """Verifies a certificate from the problem alone, as `swivel check --certificate` does.
 
     problem: a Problem, or the Job of the stroke that the certificate is of, or the name of its
@@ -107,17 +120,17 @@ def _in_a_notebook():
     return shell is not None and hasattr(shell, "kernel")
 
 
-def _plan_report(self, file=None):
+def _plan_report(self, file: _File | None = None) -> str | Any:
     """Makes the page of the plan: what `swivel plan --report` writes. See swivel.report()."""
     return report(None, self, file)
 
 
-def _plan_map_svg(self, file=None, *, full=False):
+def _plan_map_svg(self, file: _File | None = None, *, full: bool = False) -> str | Any:
     """Draws the lattice map of the plan as SVG. See swivel.map_svg()."""
     return map_svg(None, self, file, full=full)
 
 
-def _plan_show(self, *, height=720):
+def _plan_show(self, *, height: int = 720) -> None:
     """Shows the page of the plan: in the cell of a notebook, else in the web browser.
 
     height: of the cell, pixels. Raises as report() does.
@@ -160,7 +173,9 @@ def _plan_html(self):
     return answer + drawn + button
 
 
-def _workcell_certificate(self, workcell=None, *, timeout=None):
+def _workcell_certificate(
+    self, workcell: Workcell | _File | None = None, *, timeout: float | None = None
+) -> WorkcellCertificate:
     """Proves that the workcell has no plan, as `swivel plan WORKCELL --certificate` does.
 
     workcell: the Workcell that was planned, or the name of its file; None for the one that the plan
@@ -174,7 +189,9 @@ def _workcell_certificate(self, workcell=None, *, timeout=None):
     )
 
 
-def _job_certificate(self, job=None, *, timeout=None):
+def _job_certificate(
+    self, job: Job | _File | None = None, *, timeout: float | None = None
+) -> Certificate:
     """Proves that a stroke has no path by itself, as `swivel plan JOB --certificate` does.
 
     job: the Job that was planned, or the name of its file; None for the one that the plan keeps

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Trajectories and motions as sequences of rows, as arrays and as data frames."""
+from __future__ import annotations
+
 import collections.abc
 import operator
 
@@ -21,7 +23,7 @@ class TrajectoryRow(tuple):
         return self
 
     @property
-    def joints(self):
+    def joints(self) -> _Array:
         """(7,), rad, base to tip; a read-only view of the rows."""
         return self._joints
 
@@ -32,7 +34,7 @@ class TrajectoryRow(tuple):
             return super().__getitem__(self._fields.index(key))
         return super().__getitem__(key)
 
-    def __getattr__(self, name):
+    def __getattr__(self, name: str) -> float:
         fields = self.__dict__.get("_fields", ())
         if name in fields:
             return super().__getitem__(fields.index(name))
@@ -60,7 +62,7 @@ def _columns(rows):
     return columns
 
 
-def _array(self, dtype=None, copy=None):
+def _array(self, dtype: DTypeLike = None, copy: bool | None = None) -> NDArray[Any]:
     """Returns the joints, (n, 7), rad: what numpy.asarray() makes of the rows."""
     joints = self.joints
     if dtype is not None and np.dtype(dtype) != joints.dtype:
@@ -75,7 +77,7 @@ def _row(rows, columns, k):
     return TrajectoryRow(columns, (column[k].item() for column in columns.values()), rows.joints[k])
 
 
-def _getitem(self, k):
+def _getitem(self, k: SupportsIndex) -> TrajectoryRow:
     """Returns the k-th row, a TrajectoryRow. Trajectories also have slices, which are trajectories.
 
     Raises IndexError.
@@ -94,13 +96,13 @@ def _getitem(self, k):
     return _row(self, _columns(self), index)
 
 
-def _iter(self):
+def _iter(self) -> Iterator[TrajectoryRow]:
     """Iterates over the rows, TrajectoryRows."""
     columns = _columns(self)
     return (_row(self, columns, k) for k in range(len(self)))
 
 
-def _to_dataframe(self):
+def _to_dataframe(self) -> Any:
     """Returns a pandas.DataFrame with one row for each row and the columns that files have.
 
     Lengths are in m, angles in rad and times in s. Needs pandas.

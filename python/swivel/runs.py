@@ -3,6 +3,8 @@
 
 They are made here or on workers of a Dask cluster.
 """
+from __future__ import annotations
+
 import contextlib
 import functools
 import os
@@ -14,30 +16,30 @@ from . import _swivel
 
 
 def place(
-    problem,
+    problem: Problem | Job | Workcell | _File,
     *,
-    object=None,
-    path=False,
-    base=False,
-    arm=None,
-    x=None,
-    y=None,
-    z=None,
-    roll=None,
-    pitch=None,
-    yaw=None,
-    hold=None,
-    sample=None,
-    seed=1,
-    refine_grid=False,
-    best="cost",
-    planner="parallel",
-    threads=0,
-    timeout=None,
-    prove=True,
-    progress=None,
-    client=None,
-):
+    object: str | None = None,
+    path: bool = False,
+    base: bool = False,
+    arm: str | None = None,
+    x: _Range | None = None,
+    y: _Range | None = None,
+    z: _Range | None = None,
+    roll: _Range | None = None,
+    pitch: _Range | None = None,
+    yaw: _Range | None = None,
+    hold: Mapping[str, _Range] | None = None,
+    sample: int | None = None,
+    seed: int = 1,
+    refine_grid: bool = False,
+    best: _Criterion | Sequence[_Criterion] = "cost",
+    planner: _PlannerKind = "parallel",
+    threads: int = 0,
+    timeout: float | None = None,
+    prove: bool = True,
+    progress: Callable[[Placements, int, int], Any] | None = None,
+    client: Any = None,
+) -> Placements:
     """Plans many placements: where should the part, the path, the robot or a held joint stand?
 
     Does what `swivel place` does.
@@ -124,16 +126,16 @@ def place(
 
 
 def campaign(
-    problem,
+    problem: Problem | Job | Workcell | _File,
     *,
-    episodes=100,
-    seed=1,
-    planner="parallel",
-    threads=0,
-    prove=True,
-    progress=None,
-    client=None,
-):
+    episodes: int = 100,
+    seed: int = 1,
+    planner: _PlannerKind = "parallel",
+    threads: int = 0,
+    prove: bool = True,
+    progress: Callable[[Episodes, int, int], Any] | None = None,
+    client: Any = None,
+) -> Episodes:
     """Plans many episodes: the problem, job or workcell with its `vary` at random poses.
 
     Does what `swivel campaign` does.
