@@ -12,7 +12,7 @@ import { deflateSync } from 'node:zlib';
 
 const sources = dirname(fileURLToPath(import.meta.url)),
   folder = resolve(process.argv[2]);
-const { build } = createRequire(join(folder, 'package.json'))('esbuild');
+const { build, transform } = createRequire(join(folder, 'package.json'))('esbuild');
 const source = (name) => join(sources, name);
 
 // The sources lie elsewhere than the packages they import.
@@ -72,6 +72,8 @@ async function bundled(entry) {
   }
   return bundle.outputFiles[0].text.replaceAll('</script', '<\\/script');
 }
+const css = readFileSync(source('page.css'), 'utf8'),
+  { code: look } = await transform(css, { loader: 'css', minify: true });
 const hash = (script) => `'sha256-${createHash('sha256').update(script).digest('base64')}'`,
   starter = await bundled('starter.js');
 for (const [frame, entry, result, title] of [
@@ -89,7 +91,7 @@ for (const [frame, entry, result, title] of [
       .replace('  <!-- view.html -->\n', () => readFileSync(source('view.html'), 'utf8'))
       .replace('@@TITLE@@', () => title)
       .replace('<!-- packed.html -->\n', () => readFileSync(source('packed.html'), 'utf8'))
-      .replace('/* page.css */', () => readFileSync(source('page.css'), 'utf8'))
+      .replace('/* page.css */', () => look)
       // Nothing else runs in the page.
       .replace('@@SCRIPT-HASHES@@', () => `${hash(starter)} ${hash(program)}`)
       .replace('/* program */', () => deflateSync(program, { level: 9 }).toString('base64'))
