@@ -4,6 +4,7 @@ import { bytes } from './bytes.js';
 import { toolPose } from './kinematics.js';
 import { Nearness, placesOf } from './nearness.js';
 import { $, data, slideTo } from './page.js';
+import { Player, viewOptions } from './player.js';
 import { startView } from './scene.js';
 
 const kSeconds = 8; // that a path takes
@@ -13,19 +14,18 @@ window.swivel = { cell: null, joints: null, frames: 0 };
 export class Placed {
   constructor({ plans }) {
     this.plans = new Map(plans.map((plan) => [plan.cell, plan]));
-    Object.assign(this, { cursor: 0, playing: false });
+    this.cursor = 0;
+    this.player = new Player(() => {
+      if (this.cursor >= this.shown.rows.length - 1) this.go(0);
+      return true;
+    });
     $('slider').addEventListener('input', ({ target }) => {
-      this.pause();
+      this.player.pause();
       this.go(Number(target.value));
     });
-    $('play').addEventListener('click', () => (this.playing ? this.pause() : this.play()));
-    $('views').addEventListener('change', ({ target }) => {
-      this.view?.look(target.value);
-      target.value = '';
-    });
-    $('visual').addEventListener('change', ({ target }) => this.view?.showVisual(target.checked));
-    $('names').addEventListener('change', ({ target }) =>
-      $('view').classList.toggle('nameless', !target.checked),
+    viewOptions(
+      () => this.view,
+      () => window.swivel.joints,
     );
     startView(
       () => this.shown,
@@ -68,7 +68,7 @@ export class Placed {
     this.view?.show(this.shown);
     this.view?.colourPath([NaN]);
     if (this.squares) this.lay(this.squares);
-    this.pause();
+    this.player.pause();
     this.go(this.isPartial ? rows.length - 1 : 0);
   }
   /**
@@ -115,26 +115,13 @@ export class Placed {
     slideTo(this.cursor, where);
     $('where').textContent = where;
   }
-  play() {
-    if (this.cursor >= this.shown.rows.length - 1) this.go(0);
-    this.playing = true;
-    this.before = performance.now();
-    $('play').textContent = '❚❚';
-    $('play').setAttribute('aria-label', 'Pause');
-  }
-  pause() {
-    this.playing = false;
-    $('play').textContent = '▶';
-    $('play').setAttribute('aria-label', 'Play');
-  }
   /** Plays on; true while it plays. now: ms. */
   step(now) {
-    if (!this.playing) return false;
+    if (!this.player.playing) return false;
     const last = this.shown.rows.length - 1;
-    this.go(this.cursor + (Math.max(0, now - this.before) / 1000 / kSeconds) * last);
-    this.before = now;
-    if (this.cursor >= last) this.pause();
-    return this.playing;
+    this.go(this.cursor + (this.player.passed(now) / kSeconds) * last);
+    if (this.cursor >= last) this.player.pause();
+    return this.player.playing;
   }
   paint() {
     this.view?.paint();

@@ -26,7 +26,7 @@ export class Player {
   }
   /** Seconds that have passed in the motion since the last call. */
   passed(now) {
-    const seconds = (Math.max(0, now - this.before) / 1000) * Number($('speed').value);
+    const seconds = (Math.max(0, now - this.before) / 1000) * Number($('speed')?.value ?? 1);
     this.before = now;
     return seconds;
   }
