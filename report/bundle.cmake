@@ -1,10 +1,9 @@
 # Bundles the pages of report/web into FOLDER: report.html, overview.html, placements.html,
-# job.html, workcell.html, THIRD-PARTY.txt. npm runs when the pinned packages have changed.
-# Where that fails and REPORT is AUTO, the pages are left empty: the planner is built all the same,
-# without --report.
+# THIRD-PARTY.txt. npm runs when the pinned packages have changed. Where that fails and REPORT is
+# AUTO, the pages are left empty: the planner is built all the same, without --report.
 set(web ${CMAKE_CURRENT_LIST_DIR}/web)
 set(results ${FOLDER}/report.html ${FOLDER}/overview.html ${FOLDER}/placements.html
-  ${FOLDER}/job.html ${FOLDER}/workcell.html ${FOLDER}/THIRD-PARTY.txt)
+  ${FOLDER}/THIRD-PARTY.txt)
 file(MAKE_DIRECTORY ${FOLDER})
 
 function(run what)
@@ -25,7 +24,7 @@ function(run what)
   # each time.
   string(REPLACE " " "\\ " rule "${FOLDER}/report.html: ${web}/build.mjs")
   string(REPLACE ":\\ " ": " rule "${rule}")
-  file(WRITE ${FOLDER}/pages.d "${rule}\n")
+  file(WRITE ${FOLDER}/bundle.d "${rule}\n")
   set(failed TRUE PARENT_SCOPE)
 endfunction()
 

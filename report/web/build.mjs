@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bundles each page into one file, report.html, overview.html, placements.html, job.html and
-// workcell.html; "@@DATA@@" in them stands for the data. Argument: the folder that holds
-// node_modules and gets the pages, THIRD-PARTY.txt (the notices of all that was bundled, which the
-// pages carry too) and pages.d (what was read).
+// Bundles each page into one file, report.html, overview.html and placements.html; "@@DATA@@" in
+// them stands for the data. Argument: the folder that holds node_modules and gets the pages,
+// THIRD-PARTY.txt (the notices of all that was bundled, which the pages carry too) and bundle.d (what
+// was read).
 import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import { createHash } from 'node:crypto';
 import { createRequire } from 'node:module';
@@ -80,8 +80,6 @@ for (const [frame, entry, result, title] of [
   ['page.html', 'main.js', 'report.html', 'Swivel report'],
   ['campaign.html', 'campaign.js', 'overview.html', 'Swivel campaign'],
   ['placement.html', 'placement.js', 'placements.html', 'Swivel placements'],
-  ['job.html', 'job.js', 'job.html', 'Swivel job'],
-  ['workcell.html', 'workcell.js', 'workcell.html', 'Swivel workcell'],
 ]) {
   const program = await bundled(entry);
   read.add(source(frame));
@@ -111,7 +109,7 @@ for (const [result, page] of pages)
   );
 const escaped = (path) => path.replace(/[ #\\]/g, '\\$&').replaceAll('$', '$$$$');
 writeFileSync(
-  join(folder, 'pages.d'),
+  join(folder, 'bundle.d'),
   `${pages.map(([result]) => escaped(join(folder, result))).join(' ')}: ` +
     `${[...read].map(escaped).join(' ')}\n`,
 );

@@ -170,14 +170,23 @@ export class Cells {
 }
 
 const turns = (cells) => cells.panels.some(({ rolls }) => rolls);
-/** What the map is called. */
-export const mapTitle = (cells) =>
-  turns(cells) ? '(s, φ) and (s, ρ) maps' : `(s, ${cells.letter}) map`;
+/** What the maps of paths are called. */
+export function mapTitle(paths) {
+  const titles = paths.map(({ cells }) =>
+      turns(cells) ? '(s, φ) and (s, ρ) maps' : `(s, ${cells.letter}) map`,
+    ),
+    names = paths.map(({ label }) => label).filter((label) => label);
+  if (!names.length) return titles.join('');
+  return (
+    [...new Set(titles)].map((title) => title.replace(/map$/, 'maps')).join(', ') +
+    ` of ${names.join(' and ')}`
+  );
+}
 /**
- * How the map is to be read. lattice: of the result; beside: a path is drawn beside the refined
- * one; ended: a line shows where every path has ended.
+ * How a map is to be read. beside: a path is drawn beside the refined one; ended: a line shows where
+ * every path has ended.
  */
-export function mapNote(cells, lattice, { beside, ended }) {
+function mapNote({ cells, result: { lattice }, beside, ended, label }) {
   const unseen = cells.count((state) => state === UNSEEN),
     known = cells.count((state) => state === FREE || state === BLOCKED);
   const several = cells.layers_each * cells.angles_each > 1;
@@ -201,10 +210,29 @@ export function mapNote(cells, lattice, { beside, ended }) {
     (lattice.rolls
       ? ' Branches are drawn at the rolls with which the path was found, rolls at its arm angles.'
       : '') +
-    (beside
+    (beside.length && !label
       ? ' The thin dashed line is the path that was found on the lattice, before it was refined ' +
         'or timed.'
       : '') +
     (ended ? ' The dashed line is where every path has ended.' : '')
+  );
+}
+/** How the maps of paths are to be read; what is the same of all is said once. */
+export function mapNotes(paths) {
+  const notes = paths.map((path) => mapNote(path).trim()),
+    own = notes.map((note, k) => `${paths[k].label}: ${note}`).join(' '),
+    named = (wanted) =>
+      paths
+        .filter((path) => path.label && wanted(path))
+        .map(({ label }) => label)
+        .join(' and '),
+    empty = named(({ cells }) => !cells.panels.length),
+    alone = named(({ beside, refined }) => beside.length && !refined),
+    before = named(({ beside, refined }) => beside.length && refined);
+  return (
+    (new Set(notes).size > 1 ? own : (notes[0] ?? '')) +
+    (empty ? ` No pose of ${empty} exists, so that it has no map.` : '') +
+    (alone ? ` The thin dashed line is the path that ${alone} would take alone.` : '') +
+    (before ? ` The thin dashed line is the path of ${before} before it was refined or timed.` : '')
   );
 }

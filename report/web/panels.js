@@ -41,10 +41,28 @@ function marks(cells) {
   ]);
 }
 
-/** Fills a legend. entries: as of Cells.legend(); colours: of the theme. */
-export function showLegend(host, entries, colours) {
+/** Fills the legend of the maps of paths, whose colours mean the same. */
+export function paintLegend(host, paths) {
+  const colours = isDark() ? kDark : kLight,
+    entries = new Map();
+  for (const { cells } of paths)
+    for (const one of cells?.legend(colours) ?? []) {
+      const known = entries.get(one.meaning) ?? { ...one, details: [] };
+      known.details = [...new Set([...known.details, ...one.details])].sort();
+      entries.set(one.meaning, known);
+    }
+  if (paths[0].region)
+    entries.set('region', {
+      meaning: paths[0].region.of_motion
+        ? 'first conflict: the motion on from here and that of the other arm do not keep clear'
+        : 'first conflict: no pose here keeps clear of any such pose of the other arm',
+      colour: '#fff',
+      lines: kLines.nearest,
+      hatched: true,
+      details: [],
+    });
   host.replaceChildren(
-    ...entries.map((one) => {
+    ...[...entries.values()].map((one) => {
       const entry = document.createElement('span'),
         swatch = document.createElement('i');
       swatch.style.background = one.hatched
@@ -60,22 +78,21 @@ const kRegionLeast = 7; // pixels, of the width in which a region is drawn
 
 export class Panels {
   /**
-   * cells: Cells; rows: of the path; beside: rows of the path that it was refined from, or of
-   * another one, or none; cut: { layer } where every path has ended, or null; hover, pick: called
-   * with a cell, or null. Of one of two arms: name, which stands before those of panels; region:
-   * { runs: [{ layer, sheet, from, to }] } of cells where it bars the other, or null; the page then
-   * fills the legend of both.
+   * path: { cells: Cells; rows: of the path; beside: rows of the path that it was refined from, or
+   * of another one, or none; ended: whether all paths end where the rows do; label: stands before
+   * the names of panels, where there are several paths; region: { runs: [{ layer, sheet, from, to
+   * }] } of cells where the arm bars the other, or none }; hover, pick: called with a cell, or null.
    */
-  constructor(host, cells, rows, beside, cut, hover, pick, { name = '', region = null } = {}) {
-    Object.assign(this, { cells, rows, beside, cut, marks: marks(cells), pose: null });
-    Object.assign(this, { name, region });
+  constructor(host, { cells, rows, beside, ended, label, region }, hover, pick) {
+    Object.assign(this, { cells, rows, beside, ended, label, region });
+    Object.assign(this, { marks: marks(cells), pose: null });
     this.panels = cells.panels.map((panel, index) => {
       const box = document.createElement('div');
       box.className = 'panel';
       box.innerHTML =
         '<h3></h3><div class="stack"><div class="chart"></div><div class="cursor"></div>' +
         '<div class="dot" hidden></div></div>';
-      box.firstChild.textContent = name ? `${name}: ${panel.name}` : panel.name;
+      box.firstChild.textContent = `${label && `${label}: `}${panel.name}`;
       const drawn = {
         ...panel,
         index,
@@ -138,7 +155,7 @@ export class Panels {
   }
   /** vector: cells as rectangles, not as a picture. */
   drawing(panel, width, height, colours, vector = false) {
-    const { cells, rows, beside, cut, marks } = this,
+    const { cells, rows, beside, ended, marks } = this,
       axis = panel.rolls ? 'ρ, deg' : `${cells.letter}, ${unitOf(cells).unit}`;
     const lineOf = (path) =>
       path.flatMap((row, k) => {
@@ -203,13 +220,13 @@ export class Panels {
         (_, { x, y }) => this.walls(panel.index, x, y, colours),
         (_, { x, y }) => this.barred(panel, x, y),
         Plot.frame({ stroke: colours.soft, strokeOpacity: 0.5 }),
-        cut === null
-          ? null
-          : Plot.ruleX([cut.layer + 0.5], {
+        ended
+          ? Plot.ruleX([rows.at(-1).layer + 0.5], {
               stroke: kLines.nearest,
               strokeWidth: 2,
               strokeDasharray: '5 3',
-            }),
+            })
+          : null,
         Plot.line(before, { x: 'x', y: 'y', stroke: '#fff', strokeWidth: 3 }),
         Plot.line(before, {
           x: 'x',
@@ -404,11 +421,9 @@ export class Panels {
         colours,
       );
       Object.assign(panel, { x: drawing.scale('x'), y: drawing.scale('y') });
-      const name = this.name ? `${this.name}, ${panel.name}` : panel.name;
+      const name = `${this.label && `${this.label}, `}${panel.name}`;
       show(panel.chart, drawing, `Map of ${name}: ${this.share(panel)}`);
     }
-    if (!this.name)
-      showLegend(document.getElementById('legend'), this.cells.legend(colours), colours);
     this.draw(this.pose);
   }
   /** The cursor alone, which moves with every frame: to a pose, or none. */

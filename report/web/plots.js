@@ -16,7 +16,7 @@ export class Plots {
    * of values; seek: called with the row, not always a whole number, that the user points at.
    */
   constructor(host, s, series, seek, axis = 's, m') {
-    Object.assign(this, { s, axis });
+    Object.assign(this, { host, s, axis });
     this.plots = series.map((one) => {
       const box = document.createElement('div');
       box.className = 'plot';

@@ -139,14 +139,6 @@ export const offPath = (at, row) => ({
   line: at.line ?? null,
   note: at.what,
 });
-/**
- * The pose where every path has ended: the one past it that bars the way, or the last row of the
- * path, with what keeps it there. cut: of the page's data; steps: stepsOf(rows).
- */
-export const endPose = (cut, rows, steps) =>
-  cut.is_row
-    ? { ...poseAt(rows, steps, rows.length - 1), pair: null, line: null, note: cut.what }
-    : offPath(cut, rowOf(rows, cut.layer));
 /** What the button that leads there is called. */
 export const endName = (cut) => (cut?.is_row ? 'Where it ends' : 'Blocked pose');
 /**
@@ -156,6 +148,17 @@ export const endName = (cut) => (cut?.is_row ? 'Where it ends' : 'Blocked pose')
 export function rowOf(rows, layer) {
   const k = rows.findIndex((row) => row.layer >= layer);
   return k < 0 ? null : k;
+}
+/**
+ * The row nearest to s; of several there, where the tool turns in place, the one of which `off` is
+ * least. off: called with a row and its number.
+ */
+export function rowAt(rows, s, off = () => 0) {
+  const away = (k) => [Math.abs(rows[k].s - s), off(rows[k], k)];
+  return rows.reduce((best, _, k) => {
+    const [a, b] = [away(k), away(best)];
+    return a[0] < b[0] || (a[0] === b[0] && a[1] < b[1]) ? k : best;
+  }, 0);
 }
 /**
  * The next cell up (by: 1) or down (-1) in the map that is of the same solution and has other

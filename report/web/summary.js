@@ -1,137 +1,145 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The plan in words and numbers.
+// An answer in words and numbers: its first line, warnings, the list of what it consists of, and
+// what is told alike of all answers.
 import { $, number, table } from './page.js';
+import { rowAt } from './poses.js';
 import { kNear } from './readout.js';
 
 /**
- * The answer in one line; what it names along the path are buttons that go there. jump: called with
- * s, m, and with what is least at the row that is meant, of several at that s.
+ * The answer in one line. parts: { text, near, and where it leads: a row (of `path`, where several
+ * are shown one by one), or ends: the number of what has no path }; go: called with a part.
  */
-export function verdict(host, { answer, result, chain, map }, jump) {
-  const helps = result.advice?.filter(({ outcome }) => outcome === 'solved') ?? [];
-  const {
-      clearance,
-      joint_limit: turn,
-      slide_limit: slide,
-      tool_path_error: error,
-      top_tool_speed: speed,
-    } = result.summary ?? {},
-    d = result.diagnosis,
-    held = result.held ?? [];
-  const margin = (k, q) => Math.min(q[k] - chain.joints[k].lower, chain.joints[k].upper - q[k]);
-  const say = (text, s, off, near = false) => {
-    if (host.childNodes.length) host.append(separator());
-    if (s === undefined || s === null)
-      return host.append(
-        Object.assign(document.createElement('span'), { className: 'part', textContent: text }),
-      );
-    const button = document.createElement('button');
-    button.classList.toggle('near', near);
-    Object.assign(button, { textContent: `${text} at s ${s.toFixed(3)}`, title: 'Go there' });
-    button.addEventListener('click', () => jump(s, off));
-    host.append(button);
-  };
-  host.classList.add(result.status === 'solved' ? 'solved' : 'failed');
-  if (result.status !== 'solved') {
-    // As the terminal has it: its first line is the verdict, the next may say what else stands in
-    // the way.
-    const [first, second] = answer.split('\n');
-    say(`${first[0].toUpperCase()}${first.slice(1)}.`);
-    if (/^ {2}(without|no single)/.test(second ?? '')) say(second.trim());
-    if (d?.unreachable)
-      say(
-        'no joints within their limits reach ' +
-          (d.unreachable.waypoint === null
-            ? `layer ${d.unreachable.layer}`
-            : `waypoint ${d.unreachable.waypoint}`),
-        d.unreachable.s,
-      );
-    if (helps.length)
-      say(
-        'What would help: ' +
-          helps[0].words +
-          `${helps.length > 1 ? `, or one of ${helps.length - 1} more` : ''}`,
-      );
-    else
-      say(
-        result.advice
-          ? 'Nothing that was tried helps'
-          : 'What would help is planned with --advise 1',
-      );
-  } else {
-    say(`Solved: ${map.layers} layers, cost ${number(result.cost)}`);
-    if (clearance)
-      say(
-        `least clearance ${number(1e3 * clearance.value, 3)} mm (asked ` +
-          `${number(1e3 * clearance.asked)}): ${clearance.bodies.join(' – ')}`,
-        clearance.s,
-        (_, k) => k !== result.min_margin.row,
-      );
-    if (result.min_clearance_status === 'not_measured') say('clearance not measured');
-    const contact = result.deepest_contact;
-    if (result.deepest_contact_status === 'not_measured') say('depth of contact not measured');
-    if (contact)
-      say(contactWords(contact), result.trajectory[contact.row]?.s, (_, k) => k !== contact.row);
-    for (const [limit, room, unit] of [
-      [turn, turn?.margin_deg, '°'],
-      [slide, slide?.margin_mm, ' mm'],
-    ])
-      if (limit)
-        say(
-          `${limit.joint} ${number(room, 2)}${unit} from its limit`,
-          limit.s,
-          ({ q }) =>
-            margin(
-              chain.joints.findIndex(({ name }) => name === limit.joint),
-              q,
-            ),
-          room < kNear,
-        );
-    if (error)
-      say(
-        `tool ${number(error.max_mm, 2)} mm off` +
-          (error.allowed_mm === null || error.allowed_mm === undefined
-            ? ''
-            : ` (allowed ${number(error.allowed_mm)})`),
-        error.s,
-        ({ error_mm }) => -error_mm,
-      );
-    if (speed)
-      say(`tool up to ${number(speed.speed, 3)} m/s (${speed.joint})`, speed.s, (_, k) => -k);
-    if (held.length) say(`held: ${heldWords(held)}`);
-  }
-  warn(host, result);
+export function tellVerdict(parts, found, go) {
+  const host = $('verdict');
+  host.classList.add(found ? 'solved' : 'failed');
+  parts.forEach((part, k) => {
+    const leads = (part.row ?? part.ends) !== undefined,
+      element = document.createElement(leads ? 'button' : 'span');
+    element.textContent = part.text;
+    element.className = leads ? (part.near ? 'near' : '') : 'part';
+    if (leads) {
+      element.title = 'Go there';
+      element.addEventListener('click', () => go(part));
+    }
+    if (k) host.append(separator());
+    host.append(element);
+  });
 }
-
-/** How deep two bodies may touch and do. */
-export const contactWords = ({ depth, at_most, allowed, bodies }) =>
-  `contact ${at_most === null ? 'at least ' : ''}${number(1e3 * depth, 3)} mm deep` +
-  `${allowed === null ? '' : ` (allowed ${number(1e3 * allowed)})`}: ${bodies.join(' – ')}`;
-/** The joints that are held, and where. */
-export const heldWords = (held) =>
-  held.map(({ joint, position, unit }) => `${joint} at ${number(position)} ${unit}`).join(', ');
-
 /** What stands between the parts of an answer that is one line. */
-export const separator = () =>
+const separator = () =>
   Object.assign(document.createElement('span'), { className: 'separator', textContent: ' · ' });
 
+export const capital = (text) => text[0].toUpperCase() + text.slice(1);
+/**
+ * How an answer begins that found nothing, as the terminal has it: its first line is the verdict,
+ * the next may say what else stands in the way. of: one of several arms, or ''.
+ */
+export function firstWords(answer, of = '') {
+  const [first, second] = answer.split('\n');
+  return [
+    { text: `${of ? `${of}: ${first}` : capital(first)}.` },
+    ...(/^ {2}(without|no single)/.test(second ?? '') ? [{ text: second.trim() }] : []),
+  ];
+}
+export const clearanceWords = ({ value, asked, bodies }) =>
+  `least clearance ${number(1e3 * value, 3)} mm (asked ${number(1e3 * asked)}): ` +
+  bodies.join(' – ');
+/** What comes nearest to a bound along the rows of a path, as parts of the answer. */
+export function leastAlong({ rows, chain, result, label }) {
+  const { clearance, joint_limit: turn, slide_limit: slide } = result.summary ?? {},
+    contact = result.deepest_contact,
+    parts = [],
+    of = label && `${label}: `;
+  const say = (text, s, off, near = false) =>
+    parts.push({ text: `${text} at s ${s.toFixed(3)}`, row: rowAt(rows, s, off), near });
+  if (clearance)
+    say(of + clearanceWords(clearance), clearance.s, (_, k) => k !== result.min_margin?.row);
+  if (result.min_clearance_status === 'not_measured')
+    parts.push({ text: `${of}clearance not measured` });
+  if (result.deepest_contact_status === 'not_measured')
+    parts.push({ text: `${of}depth of contact not measured` });
+  if (contact) say(of + contactWords(contact), rows[contact.row].s, (_, k) => k !== contact.row);
+  for (const [limit, room, unit] of [
+    [turn, turn?.margin_deg, '°'],
+    [slide, slide?.margin_mm, ' mm'],
+  ]) {
+    if (!limit) continue;
+    const at = chain.joints.findIndex(({ name }) => name === limit.joint),
+      { lower, upper } = chain.joints[at];
+    say(
+      `${limit.joint} ${number(room, 2)}${unit} from its limit`,
+      limit.s,
+      ({ q }) => Math.min(q[at] - lower, upper - q[at]),
+      room < kNear,
+    );
+  }
+  return parts;
+}
+/** How deep two bodies may touch and do. */
+const contactWords = ({ depth, at_most, allowed, bodies }) =>
+  `contact ${at_most === null ? 'at least ' : ''}${number(1e3 * depth, 3)} mm deep` +
+  `${allowed === null ? '' : ` (allowed ${number(1e3 * allowed)})`}: ${bodies.join(' – ')}`;
+/** The joints that are held, and where, as parts of the answer: one, or none. */
+export const heldParts = (held) =>
+  held.length
+    ? [
+        {
+          text: `held: ${held
+            .map(({ joint, position, unit }) => `${joint} at ${number(position)} ${unit}`)
+            .join(', ')}`,
+        },
+      ]
+    : [];
+
 const kOpen = 2; // warnings; more are folded
-/** The warnings of the answer and of its motion, below a line of the page. */
-export function warn(host, result) {
-  const warnings = [...(result.warnings ?? []), ...(result.motion?.warnings ?? [])];
+/** The warnings of the answer, of its arms and of its motion, below its first line. */
+export function warn({ warnings = [], arms = [], motion }) {
+  const all = new Set([
+    ...warnings,
+    ...arms.flatMap((arm) => arm.warnings),
+    ...(motion?.warnings ?? []),
+    ...(motion?.arms ?? []).flatMap((arm) => arm.warnings.map((one) => `${arm.name}: ${one}`)),
+  ]);
   // What is said of the job need not be said of each stroke.
-  const again = (text) => warnings.some((other) => other !== text && text.endsWith(`: ${other}`));
-  const lines = warnings
+  const again = (text) => [...all].some((other) => other !== text && text.endsWith(`: ${other}`));
+  const lines = [...all]
     .filter((warning) => !again(warning))
     .map((warning) =>
       Object.assign(document.createElement('p'), { className: 'warning', textContent: warning }),
     );
-  if (lines.length <= kOpen) return host.after(...lines);
+  if (lines.length <= kOpen) return $('verdict').after(...lines);
   const fold = Object.assign(document.createElement('details'), { className: 'warnings' }),
     title = document.createElement('summary');
   title.textContent = `${lines.length} warnings`;
   fold.append(title, ...lines);
-  host.after(fold);
+  $('verdict').after(fold);
+}
+
+/**
+ * The list of strokes or arms. columns: [name, value of a line]; lines: those of which a number is
+ * less than `count` lead somewhere, as `tip` says; pick: called with the number. Returns the lines'
+ * elements.
+ */
+export function fillList({ title, columns, lines, count, tip }, pick) {
+  const [head, body] = ['thead tr', 'tbody'].map((part) => $('list').querySelector(part));
+  $('list').querySelector('h2').textContent = title;
+  for (const [name] of columns)
+    head.append(Object.assign(document.createElement('th'), { textContent: name }));
+  return lines.map((one, k) => {
+    const line = body.insertRow();
+    for (const [, value] of columns) line.insertCell().textContent = value(one) ?? '–';
+    if (k < count) {
+      Object.assign(line, { tabIndex: 0, title: tip });
+      line.addEventListener('click', () => pick(k));
+      line.addEventListener('keydown', (event) => event.key === 'Enter' && pick(k));
+    }
+    return line;
+  });
+}
+
+/** Tables below the answer. tables: [caption, [name, value] of each line]; empty ones are left out. */
+export function addTables(tables) {
+  for (const [caption, entries] of tables) if (entries.length) table($('tables'), caption, entries);
 }
 
 /** Units of keys whose numbers have one; angles are told in degrees. */
@@ -165,46 +173,9 @@ export const words = (object) =>
       const value = number(unit.startsWith('°') ? (v * 180) / Math.PI : v);
       return [name, `${value}${unit.startsWith('°') || !unit ? '' : ' '}${unit}`];
     });
-
-export function summary({ answer, result, settings }) {
-  if (result.status !== 'solved') $('answer').textContent = answer.trimEnd();
-  const add = (caption, entries) => entries.length && table($('tables'), caption, entries);
-  const removed = result.diagnosis?.removed,
-    empty = result.diagnosis?.empty_layers ?? [];
-  // Each was planned: what it says of itself is what came out.
-  const cameTo = ({ outcome, cost, reached_s }) =>
-    ({
-      solved: `solved, cost ${number(cost)}`,
-      further: `not enough: paths to s = ${number(reached_s)} m`,
-      no_help: 'no help',
-      unknown: 'not tried in the time',
-    })[outcome];
-  if (result.advice?.length)
-    add(
-      'What would help',
-      result.advice.map((one) => [one.words, cameTo(one)]),
-    );
-  if (removed) add('Removed past the furthest layer', words(removed));
-  if (empty.length)
-    add('Empty layers', [
-      ...empty
-        .slice(0, 20)
-        .map(({ layers: [first, last], s, reason }) => [
-          first === last
-            ? `layer ${first}, s = ${number(s[0])} m`
-            : `layers ${first} to ${last}, s = ${number(s[0])} to ${number(s[1])} m`,
-          reason,
-        ]),
-      ...(empty.length > 20 ? [['more', `${empty.length - 20}`]] : []),
-    ]);
-  if (result.refinement) add('Refinement', words(result.refinement));
-  if (result.motion) add('Motion', words(result.motion));
-  add('Times, ms', [...words(result.time_ms), ...words(result.time_ms.stages)]);
-  add('Counters', words(result.counters));
-  add('Lattice', words(result.lattice));
-  add('Settings', [
-    ...words(settings),
-    ['planner', result.planner],
-    ['threads', String(result.threads)],
-  ]);
-}
+/** The table of times, and the lines of another that say what planned. */
+export const timesOf = ({ stages, ...all }) => ['Times, ms', [...words(all), ...words(stages)]];
+export const plannerOf = ({ planner, threads }) => [
+  ['planner', planner],
+  ['threads', String(threads)],
+];

@@ -1,66 +1,54 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A workcell in words and numbers.
-import { $, number, table } from './page.js';
-import { kNear } from './readout.js';
-import { contactWords, heldWords, separator, warn, words } from './summary.js';
+import { number } from './page.js';
+import { firstWords, heldParts, leastAlong, plannerOf, timesOf, words } from './summary.js';
 
-/**
- * The answer in one line, whose parts lead to the rows that they are about, and warnings. go: shows
- * a row; showCut: where the paths of an arm end.
- */
-export function verdict({ answer, result, arms }, pair, go, showCut) {
-  const host = $('verdict'),
-    found = result.cost !== null;
-  const say = (text, action, near = false) => {
-    if (host.childNodes.length) host.append(separator());
-    const part = document.createElement(action ? 'button' : 'span');
-    part.textContent = text;
-    if (action) {
-      part.title = 'Go there';
-      part.addEventListener('click', action);
-      part.classList.toggle('near', near);
-    } else part.className = 'part';
-    host.append(part);
-  };
-  host.classList.add(found ? 'solved' : 'failed');
-  if (found) sayFound(result, arms, say, go);
-  else {
-    const [first] = answer.split('\n');
-    say(`${first[0].toUpperCase()}${first.slice(1)}.`);
-    const { conflict } = result;
-    if (conflict && pair.conflict)
-      say(
-        `the cheapest paths meet at s ${conflict.s[0].toFixed(3)} of ${arms[0].name} and ` +
-          `s ${conflict.s[1].toFixed(3)} of ${arms[1].name}` +
-          `${conflict.on_motion ? ', on the way on' : ''}: ${conflict.bodies.join(' – ')}`,
-        () => go(pair.conflict.row),
-      );
-    arms.forEach((arm, k) => {
-      if (!arm.answer) return;
-      // As the terminal has it: the next line may say what else stands in the way.
-      const [line, second] = arm.answer.split('\n');
-      say(`${arm.name}: ${line}.`, arm.cut ? () => showCut(k) : undefined);
-      if (/^ {2}(without|no single)/.test(second ?? '')) say(second.trim());
-    });
-  }
-  const { motion } = result;
-  const warnings = new Set([
-    ...result.warnings,
-    ...result.arms.flatMap((arm) => arm.warnings),
-    ...(motion?.warnings ?? []),
-    ...(motion?.arms ?? []).flatMap((arm) => arm.warnings.map((one) => `${arm.name}: ${one}`)),
-  ]);
-  warn(host, { warnings: [...warnings] });
+export const kTexts = {
+  kind: 'workcell',
+  slider: 'Position along both paths',
+  along: () => 'Along the paths',
+  maps: 'a map',
+  keys: '↑ ↓ turn one arm while its tool stands still (self-motion), a chooses which arm',
+  address: '#row=12 opens there',
+};
+
+/** The answer in one line, as tellVerdict() takes it. */
+export function verdict({ answer, result }, { paths, conflict }) {
+  if (result.cost !== null) return found(result, paths);
+  const [first] = firstWords(answer),
+    [one, other] = paths,
+    { s, bodies, on_motion } = result.conflict ?? {};
+  return [
+    first,
+    ...(conflict
+      ? [
+          {
+            text:
+              `the cheapest paths meet at s ${s[0].toFixed(3)} of ${one.name} and ` +
+              `s ${s[1].toFixed(3)} of ${other.name}${on_motion ? ', on the way on' : ''}: ` +
+              bodies.join(' – '),
+            row: conflict.row,
+          },
+        ]
+      : []),
+    ...paths.flatMap((arm, k) => {
+      if (!arm.answer) return [];
+      const [{ text }, ...second] = firstWords(arm.answer, arm.name);
+      return [{ text, ...(arm.cut && { ends: k }) }, ...second];
+    }),
+  ];
 }
 
 /** What a plan costs and keeps. */
-function sayFound(result, arms, say, go) {
+function found(result, paths) {
   const alone = result.arms.reduce((sum, { least_cost }) => sum + least_cost, 0),
     solved = result.status === 'solved',
     found = costOfNodes(result),
     before = result.refinement ? 'before refining ' : '';
+  const parts = [],
+    say = (text, row) => parts.push({ text, row });
   say(
-    `${solved ? 'Solved' : 'Stopped'}: two arms, ${arms[0].rows.length} rows, cost ` +
+    `${solved ? 'Solved' : 'Stopped'}: two arms, ${paths[0].rows.length} rows, cost ` +
       `${number(result.cost)}: ${before}` +
       (result.decided_by === 'arms alone'
         ? 'that of both arms alone, which do not meet'
@@ -83,34 +71,15 @@ function sayFound(result, arms, say, go) {
       `arms nearest to each other ${number(near.clearance_mm, 3)} mm (asked ` +
         `${number(near.clearance_mm - near.margin_mm)}): ${near.bodies.join(' – ')} at row ` +
         near.row,
-      () => go(near.row),
+      near.row,
     );
-  result.arms.forEach((arm, k) => {
-    const { name, summary, deepest_contact: contact, deepest_contact_status: looked } = arm;
-    const rowAt = (s) =>
-      arms[k].rows.reduce(
-        (best, row, i) => (Math.abs(row.s - s) < Math.abs(arms[k].rows[best].s - s) ? i : best),
-        0,
-      );
-    const { clearance, joint_limit: limit } = summary ?? {};
-    if (clearance)
-      say(
-        `${name}: least clearance ${number(1e3 * clearance.value, 3)} mm (asked ` +
-          `${number(1e3 * clearance.asked)}): ${clearance.bodies.join(' – ')} at s ` +
-          clearance.s.toFixed(3),
-        () => go(rowAt(clearance.s)),
-      );
-    if (looked === 'not_measured') say(`${name}: depth of contact not measured`);
-    if (contact) say(`${contactWords(contact)} at row ${contact.row}`, () => go(contact.row));
-    if (limit)
-      say(
-        `${limit.joint} ${number(limit.margin_deg, 2)}° from its limit at s ` + limit.s.toFixed(3),
-        () => go(rowAt(limit.s)),
-        limit.margin_deg < kNear,
-      );
-  });
-  const held = new Map(result.arms.flatMap((arm) => arm.held).map((one) => [one.joint, one]));
-  if (held.size) say(`held: ${heldWords([...held.values()])}`);
+  return [
+    ...parts,
+    ...paths.flatMap(leastAlong),
+    ...heldParts([
+      ...new Map(result.arms.flatMap(({ held }) => held).map((one) => [one.joint, one])).values(),
+    ]),
+  ];
 }
 
 /** What both paths of the lattices cost, before they were refined. */
@@ -118,7 +87,7 @@ const costOfNodes = ({ arms }) => arms.reduce((sum, { lattice }) => sum + lattic
 
 const millimetres = (value) => (value === undefined ? null : number(1e3 * value));
 const kColumns = [
-  ['arm', ({ name }) => name],
+  ['arm', ({ name, leads = '' }) => name + leads],
   ['path', ({ path, least_cost }) => path ?? (least_cost === null ? 'none' : 'by itself')],
   ['cost', ({ cost }) => number(cost, 5)],
   ['before refining', ({ before }) => number(before, 5)],
@@ -135,80 +104,74 @@ const kColumns = [
 ];
 const limitWords = (limit) => (limit ? `${number(limit.margin_deg, 3)}° (${limit.joint})` : null);
 
-/** The table of arms; choose: called with the number of one. */
-export function armTable({ result, arms }, choose) {
-  const { refinement } = result,
-    own = result.arms.map((arm, k) => ({
-      ...arm,
-      found: arm.cost === null ? null : arm.lattice.cost,
-      before: refinement?.arms[k].cost_before ?? null,
-    }));
+/** The list of arms, as fillList() takes it. */
+export function list({ result }, { paths }) {
+  const { refinement, arms } = result;
+  const leads = (k) =>
+    paths[k].leader !== null
+      ? `, on the tool of ${paths[paths[k].leader].name}`
+      : paths.some(({ leader }) => leader === k)
+        ? ', leads'
+        : '';
+  const own = arms.map((arm, k) => ({
+    ...arm,
+    leads: leads(k),
+    found: arm.cost === null ? null : arm.lattice.cost,
+    before: refinement?.arms[k].cost_before ?? null,
+  }));
   const both = {
     name: 'both',
     path: 'none',
     cost: result.cost,
     found: result.cost === null ? null : costOfNodes(result),
     before: refinement?.cost_before ?? null,
-    least_cost: result.arms.some(({ least_cost }) => least_cost === null)
+    least_cost: arms.some(({ least_cost }) => least_cost === null)
       ? null
-      : result.arms.reduce((sum, { least_cost }) => sum + least_cost, 0),
+      : arms.reduce((sum, { least_cost }) => sum + least_cost, 0),
   };
-  const told = (value) => [...own, both].some((arm) => ![null, '–'].includes(value(arm))),
-    columns = kColumns.filter(([name, value]) =>
+  const lines = [...own, both],
+    told = (value) => lines.some((arm) => ![null, '–'].includes(value(arm)));
+  return {
+    title: 'Arms',
+    tip: 'makes it the arm that the arrows turn',
+    columns: kColumns.filter(([name, value]) =>
       name === 'path' ? result.cost === null : told(value),
     ),
-    host = $('arms');
-  for (const [name] of columns) {
-    const cell = document.createElement('th');
-    cell.textContent = name;
-    host.querySelector('thead tr').append(cell);
-  }
-  [...own, both].forEach((arm, k) => {
-    const line = host.querySelector('tbody').insertRow();
-    for (const [, value] of columns) line.insertCell().textContent = value(arm) ?? '–';
-    if (!arms[k]) return;
-    const { leader } = arms[k];
-    line.cells[0].textContent +=
-      leader !== null
-        ? `, on the tool of ${arms[leader].name}`
-        : arms.some((other) => other.leader === k)
-          ? ', leads'
-          : '';
-    line.tabIndex = 0;
-    line.title = 'makes it the arm that the arrows turn';
-    line.addEventListener('click', () => choose(k));
-    line.addEventListener('keydown', (event) => event.key === 'Enter' && choose(k));
-  });
+    lines,
+    count: own.length,
+  };
 }
 
-/** The answer where there is no plan, how it was found, work and times. */
-export function workcellSummary({ answer, result, arms }) {
-  if (result.cost === null) $('answer').textContent = answer.trimEnd();
-  const add = (caption, entries) => entries.length && table($('tables'), caption, entries),
-    { rounds, pops, node_pairs, move_pairs } = result.counters;
-  add('Search', [
-    ['decided by', result.decided_by],
-    ...(result.bound === null ? [] : [['no pair costs less than', number(result.bound, 6)]]),
-    ['regions of conflict', number(rounds, 9)],
-    ['pairs of nodes taken', number(pops, 9)],
-    ['pairs of nodes asked about', number(node_pairs, 9)],
-    ['pairs of motions asked about', number(move_pairs, 9)],
-    ['planner', result.planner],
-    ['threads', String(result.threads)],
-  ]);
-  // Workcells have stages of their own in place of these two.
-  const { prepare, plan, stages, ...rest } = result.time_ms;
-  add('Times, ms', [...words(rest), ...words(stages)]);
-  const { refinement, motion } = result;
-  if (motion) {
-    const { arms, ...both } = motion;
-    add('Motion', words(both));
-    arms?.forEach(({ name, ...arm }) => add(`Motion of ${name}`, words(arm)));
-  }
-  refinement?.arms.forEach(({ name, ...arm }) => add(`Refinement of ${name}`, words(arm)));
-  result.arms.forEach(({ name, counters, lattice }, k) => {
-    add(`Counters of ${name}`, words(counters));
-    add(`Lattice of ${name}`, words(lattice));
-    add(`Settings of ${name}`, words(arms[k].settings));
-  });
+/** The tables below the answer: how it was found, work and times. */
+export function tables({ result }, { paths }) {
+  const { rounds, pops, node_pairs, move_pairs } = result.counters,
+    { arms: moved = [], ...motion } = result.motion ?? {},
+    // Workcells have stages of their own in place of these two.
+    { prepare, plan, ...times } = result.time_ms;
+  return [
+    [
+      'Search',
+      [
+        ['decided by', result.decided_by],
+        ...(result.bound === null ? [] : [['no pair costs less than', number(result.bound, 6)]]),
+        ['regions of conflict', number(rounds, 9)],
+        ['pairs of nodes taken', number(pops, 9)],
+        ['pairs of nodes asked about', number(node_pairs, 9)],
+        ['pairs of motions asked about', number(move_pairs, 9)],
+        ...plannerOf(result),
+      ],
+    ],
+    timesOf(times),
+    ['Motion', words(motion)],
+    ...moved.map(({ name, ...arm }) => [`Motion of ${name}`, words(arm)]),
+    ...(result.refinement?.arms ?? []).map(({ name, ...arm }) => [
+      `Refinement of ${name}`,
+      words(arm),
+    ]),
+    ...result.arms.flatMap(({ name, counters, lattice }, k) => [
+      [`Counters of ${name}`, words(counters)],
+      [`Lattice of ${name}`, words(lattice)],
+      [`Settings of ${name}`, words(paths[k].settings)],
+    ]),
+  ];
 }

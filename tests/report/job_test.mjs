@@ -96,11 +96,11 @@ async function checkSections(page, { data, result }) {
 /** The map is that of the stroke at the cursor; section, list and table go to a stroke. */
 async function checkMaps(page, sections, { data }) {
   const isShown = async (k) => {
-    assert.equal((await shown(page)).stroke, k);
+    assert.equal((await shown(page)).active, k);
     assert.equal(await page.inputValue('#stroke'), String(k));
     assert.equal(await page.locator('#map > div:visible').count(), 1);
     assert.ok((await page.textContent('#plots-section h2')).startsWith(`Along ${k + 1} `));
-    assert.equal(await page.locator('#strokes tr.marked td').first().textContent(), String(k + 1));
+    assert.equal(await page.locator('#list tr.marked td').first().textContent(), String(k + 1));
     const marked = await page.locator('#strip [aria-current=true]').allTextContents();
     assert.match(marked.join(), new RegExp(`^${k + 1} row_\\d$`));
   };
@@ -124,7 +124,7 @@ async function checkMaps(page, sections, { data }) {
   await begins(1);
   await page.selectOption('#stroke', '3');
   await begins(3);
-  await page.locator('#strokes tbody tr').nth(2).click();
+  await page.locator('#list tbody tr').nth(2).click();
   await begins(2);
   await press(page, 'n');
   await press(page, 'n');
@@ -150,10 +150,10 @@ async function checkTransitions(page, sections, { result }) {
 }
 /** The table has the numbers of the answer. */
 async function checkTable(page, { result }, durations) {
-  const heads = await page.$$eval('#strokes th', (all) => all.map((one) => one.textContent));
+  const heads = await page.$$eval('#list th', (all) => all.map((one) => one.textContent));
   for (const [k, run] of result.runs.entries()) {
     const cells = await page
-      .locator('#strokes tbody tr')
+      .locator('#list tbody tr')
       .nth(k)
       .locator('td')
       .evaluateAll((all) => all.map((one) => one.textContent));
@@ -311,14 +311,14 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   const [cause] = await failed.page.locator('#verdict button').allTextContents();
   assert.match(cause, /^1 row_0.*: .*knob.* at s \d\.\d{3}$/);
   assert.match(await failed.page.textContent('#answer'), /stroke 'row_0': .*knob/);
-  assert.equal((await shown(failed.page)).stroke, 0);
+  assert.equal((await shown(failed.page)).active, 0);
   assert.deepEqual((await shown(failed.page)).joints, barred.data.strokes[0].cut.q);
   assert.match(await failed.page.textContent('#readout'), /knob/);
   assert.match(await failed.page.textContent('#map-note'), /where every path has ended/);
   await checkTable(failed.page, barred);
   await shoot(failed.page, 'job_barred.png', { fullPage: true });
   await failed.page.selectOption('#stroke', '1');
-  assert.equal((await shown(failed.page)).stroke, 1);
+  assert.equal((await shown(failed.page)).active, 1);
   assert.ok((await failed.page.locator('#map .panel:visible').count()) > 0);
   await failed.close();
 
@@ -334,7 +334,7 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   assert.deepEqual((await shown(stuck.page)).joints, home.data.home.q);
   for (const id of ['map-section', 'controls', 'plots-section', 'motion-section'])
     assert.ok(!(await stuck.page.isVisible(`#${id}`)), id);
-  assert.equal(await stuck.page.locator('#strokes tbody tr').count(), 1);
+  assert.equal(await stuck.page.locator('#list tbody tr').count(), 1);
   await stuck.close();
   console.log(
     `pages of ${[door, timed, barred].map(({ bytes }) => (bytes / 1e6).toFixed(2)).join(', ')} MB`,

@@ -243,7 +243,7 @@ async function checkBetween(page, { data, result }) {
   assert.ok(Math.abs(least - result.between_arms.margin_mm) < 1e-6);
   const { row, clearance_mm, bodies } = result.between_arms;
   await page.locator('#verdict button', { hasText: 'nearest to each other' }).click();
-  assert.equal((await shown(page)).row, row);
+  assert.equal((await shown(page)).place, row);
   assert.deepEqual((await shown(page)).line.points, data.between[row].nearest);
   assert.equal(parseFloat(await page.textContent('#gap')), Number(rounded(clearance_mm, 3)));
   assert.match(await page.textContent('#readout .gap'), new RegExp(bodies.join(' – ')));
@@ -293,12 +293,12 @@ async function checkClicks(page, { data }) {
 }
 /** The table has the numbers of the answer. */
 async function checkTable(page, { result }) {
-  const heads = await page.$$eval('#arms th', (all) => all.map((one) => one.textContent)),
+  const heads = await page.$$eval('#list th', (all) => all.map((one) => one.textContent)),
     alone = result.arms.reduce((sum, { least_cost }) => sum + least_cost, 0);
   const both = { name: 'both', cost: result.cost, least_cost: alone };
   for (const [k, arm] of [...result.arms, both].entries()) {
     const cells = await page
-      .locator('#arms tbody tr')
+      .locator('#list tbody tr')
       .nth(k)
       .locator('td')
       .evaluateAll((all) => all.map((one) => one.textContent));
@@ -360,9 +360,9 @@ async function checkMaps(page, { data }) {
   assert.ok(Math.max(...to.slice(0, 7).map((v, j) => Math.abs(v - from[j]))) > 1e-3);
   assertNear(after.flat(), before.flat(), 2e-3, 'tools');
   await press(page, 'ArrowRight');
-  assert.equal((await shown(page)).row, 4);
+  assert.equal((await shown(page)).place, 4);
   await press(page, 'End');
-  assert.equal((await shown(page)).row, data.arms[0].rows.length - 1);
+  assert.equal((await shown(page)).place, data.arms[0].rows.length - 1);
 }
 /** What the hatched cells of the maps say: which nodes of both arms bar each other. */
 async function checkRegion(page, { data }) {
@@ -461,7 +461,7 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   await drawn(small.page);
   await assertFits(small.page, phone.width);
   assert.equal((await small.page.locator('#stage').boundingBox()).height, 320);
-  assert.equal((await shown(small.page)).row, 5);
+  assert.equal((await shown(small.page)).place, 5);
   const more = 100 * (crossing.result.cost / crossing.result.bound - 1);
   assert.ok(Math.abs(more) < 1e-6);
   assert.match(
@@ -499,7 +499,7 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   );
   const { row } = meeting.data.conflict;
   assert.equal(row, conflict.layer + (conflict.on_motion ? 0.5 : 0));
-  assert.equal((await shown(failed.page)).row, row);
+  assert.equal((await shown(failed.page)).place, row);
   const kinds = () =>
     failed.page.evaluate(() =>
       window.swivel.view.arm
@@ -512,7 +512,7 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   await checkRegion(failed.page, meeting);
   await press(failed.page, 'Home');
   await failed.page.locator('#blocked', { hasText: 'Where they meet' }).click();
-  assert.equal((await shown(failed.page)).row, row);
+  assert.equal((await shown(failed.page)).place, row);
   assert.match(await failed.page.textContent('#answer'), /the cheapest paths meet at s = /);
   await assertPrints(failed.page);
   await shoot(failed.page, 'workcell_meeting.png', { fullPage: true });
@@ -533,7 +533,7 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   assert.ok(moving.result.conflict.on_motion);
   const way = await open(moving.html, { viewport: wide });
   await drawn(way.page);
-  assert.equal((await shown(way.page)).row, 0.5);
+  assert.equal((await shown(way.page)).place, 0.5);
   assert.equal((await shown(way.page)).line, null);
   assert.match(await way.page.textContent('#verdict'), /of right, on the way on: /);
   assert.match(await way.page.textContent('#readout .gap'), /meet on the way to the next row/);

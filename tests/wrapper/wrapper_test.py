@@ -254,7 +254,7 @@ class Pages(unittest.TestCase):
             for name in ("report.html", "overview.html", "THIRD-PARTY.txt"):
                 self.assertEqual((pathlib.Path(folder) / name).read_bytes(), b"")
             self.assertEqual(
-                (pathlib.Path(folder) / "pages.d").read_text(),
+                (pathlib.Path(folder) / "bundle.d").read_text(),
                 f"{folder}/report.html: {ROOT}/report/web/build.mjs\n",
             )
             self.assertIn(

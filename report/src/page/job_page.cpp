@@ -2,12 +2,10 @@
 #include "swivel/report/job_page.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <span>
 
 #include "drawing.hpp"
 #include "page/page_parts.hpp"
-#include "page/page_template.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/timing/time_path.hpp"
@@ -46,7 +44,7 @@ class JobPage {
   }
 
   /// Returns the data of the page. Throws Stopped.
-  Json data(const std::string& name, const PageWords& words) {
+  Json data(const PageWords& words) {
     Bodies bodies(world_, job_.scene);
     if (words.visual != nullptr)
       bodies.add_visual(*words.visual, *job_.arm().model, {{robot_.arm()}});
@@ -54,15 +52,11 @@ class JobPage {
     for (std::size_t k = 0; k < order_.size(); ++k) strokes.push_back(stroke(k));
     Json parts = result_.arm().parts.empty() ? partial_parts() : parts_of_job();
     json_.erase("parts");
-    return {{"problem", name},
-            {"which", words.which},
-            {"answer", words.answer},
-            {"result", std::move(json_)},
+    return {{"result", std::move(json_)},
             {"chain", chain_json(chain_)},
             {"ground", ground_json(*job_.arm().model, robot_.arm())},
             {"bodies", std::move(bodies.bodies)},
             {"visual", std::move(bodies.visual)},
-            {"unread", words.unread},
             {"meshes", std::move(bodies.meshes)},
             {"home", home()},
             {"strokes", std::move(strokes)},
@@ -224,13 +218,9 @@ class JobPage {
 
 std::string to_job_page(const PlannedJob& planned, const std::string& result_json,
                         const Budget& budget, const PageWords& words) {
-  const std::string name = std::filesystem::path(planned.job.source).filename().string();
-  const std::string title = words.which.empty() ? name : name + ", " + words.which;
   JobPage page(planned, result_json, budget);
-  Json data = page.data(name, words);
-  return fill(
-      job_template(), std::move(data),
-      {{"@@ANSWER@@", escaped_lines(title + "\n\n" + words.answer)}, {"@@MAP@@", page.maps()}});
+  Json data = page.data(words);
+  return filled_page(planned.job.source, words, std::move(data), page.maps());
 }
 
 }  // namespace swivel

@@ -38,19 +38,13 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
     shown = passed_rows(std::move(shown), samples, places);
   }
   const std::vector<PageRow> rows = placed(lattice, map, shown, view.path);
-  const std::string name = std::filesystem::path(problem.source).filename().string();
-  const std::string title = words.which.empty() ? name : name + ", " + words.which;
   Json data = {
-      {"problem", name},
-      {"which", words.which},
-      {"answer", words.answer},
       {"result", result},
       {"settings", settings_json(problem, lattice)},
       {"chain", chain_json(lattice.chain())},
       {"ground", ground_json(*problem.model, view.robot.arm())},
       {"bodies", std::move(bodies.bodies)},
       {"visual", std::move(bodies.visual)},
-      {"unread", words.unread},
       {"meshes", std::move(bodies.meshes)},
       {"tool_path", tool_path_json(lattice.path_of_rows())},
       {"rows", rows_json(world, lattice, rows, budget)},
@@ -60,9 +54,19 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
       {"cut", diagnosis.is_object() ? cut_json(map, lattice, world, view.path, rows, diagnosis)
                                     : Json(nullptr)},
       {"map", map_json(map, lattice, world, view.path, rows, kMostCells, budget)}};
-  return fill(
-      page_template(), std::move(data),
-      {{"@@ANSWER@@", escaped_lines(title + "\n\n" + words.answer)}, {"@@MAP@@", to_svg(map)}});
+  return filled_page(problem.source, words, std::move(data), to_svg(map));
+}
+
+std::string detail::filled_page(const std::string& source, const PageWords& words, Json data,
+                                const std::string& maps) {
+  const std::string name = std::filesystem::path(source).filename().string();
+  const std::string title = words.which.empty() ? name : name + ", " + words.which;
+  data["problem"] = name;
+  data["which"] = words.which;
+  data["answer"] = words.answer;
+  data["unread"] = words.unread;
+  return fill(page_template(), std::move(data),
+              {{"@@ANSWER@@", escaped_lines(title + "\n\n" + words.answer)}, {"@@MAP@@", maps}});
 }
 
 }  // namespace swivel

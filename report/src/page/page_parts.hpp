@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the pages of plans and of jobs say of one path: rows, motion, map, and where it ends.
+// What the pages of answers say of one path: rows, motion, map, and where it ends.
 #pragma once
 #include <map>
 #include <optional>
@@ -13,6 +13,7 @@
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/lattice/lattice.hpp"
 #include "swivel/report/lattice_map.hpp"
+#include "swivel/report/page.hpp"
 
 namespace swivel::detail {
 
@@ -115,5 +116,10 @@ struct NearBodies {
                             std::size_t most_cells, const Budget& budget);
 /// The cells of the map of a page with one map.
 inline constexpr std::size_t kMostCells = 200'000;
+
+/// Returns the page of an answer. `source`: the problem's file; `data`: what the page says besides
+/// `words`; `maps`: as HTML, for a page without JavaScript.
+[[nodiscard]] std::string filled_page(const std::string& source, const PageWords& words, Json data,
+                                      const std::string& maps);
 
 }  // namespace swivel::detail

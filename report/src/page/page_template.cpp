@@ -23,11 +23,8 @@
 SWIVEL_EMBED("report");
 SWIVEL_EMBED("overview");
 SWIVEL_EMBED("placements");
-SWIVEL_EMBED("job");
-SWIVEL_EMBED("workcell");
 extern "C" const char swivel_report_begin[], swivel_report_end[], swivel_overview_begin[],
-    swivel_overview_end[], swivel_placements_begin[], swivel_placements_end[], swivel_job_begin[],
-    swivel_job_end[], swivel_workcell_begin[], swivel_workcell_end[];
+    swivel_overview_end[], swivel_placements_begin[], swivel_placements_end[];
 #endif
 
 namespace swivel::detail {
@@ -53,23 +50,6 @@ std::string_view placement_template() {
 #ifdef SWIVEL_PAGES
   return {swivel_placements_begin,
           static_cast<std::size_t>(swivel_placements_end - swivel_placements_begin)};
-#else
-  return {};
-#endif
-}
-
-std::string_view job_template() {
-#ifdef SWIVEL_PAGES
-  return {swivel_job_begin, static_cast<std::size_t>(swivel_job_end - swivel_job_begin)};
-#else
-  return {};
-#endif
-}
-
-std::string_view workcell_template() {
-#ifdef SWIVEL_PAGES
-  return {swivel_workcell_begin,
-          static_cast<std::size_t>(swivel_workcell_end - swivel_workcell_begin)};
 #else
   return {};
 #endif

@@ -13,8 +13,6 @@ namespace swivel::detail {
 [[nodiscard]] std::string_view page_template();
 [[nodiscard]] std::string_view overview_template();
 [[nodiscard]] std::string_view placement_template();
-[[nodiscard]] std::string_view job_template();
-[[nodiscard]] std::string_view workcell_template();
 
 /// Returns the text with its lines escaped for HTML.
 [[nodiscard]] std::string escaped_lines(const std::string& text);

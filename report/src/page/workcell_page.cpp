@@ -2,11 +2,9 @@
 #include "swivel/report/workcell_page.hpp"
 
 #include <algorithm>
-#include <filesystem>
 
 #include "drawing.hpp"
 #include "page/page_parts.hpp"
-#include "page/page_template.hpp"
 #include "swivel/collision/arms/inter_arm_world.hpp"
 #include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/messages/formatted.hpp"
@@ -79,7 +77,7 @@ class WorkcellPage {
         json_(Json::parse(result_json)) {}
 
   /// Returns the data of the page. Throws Stopped.
-  Json data(const std::string& name, const PageWords& words) {
+  Json data(const PageWords& words) {
     const std::array<const Chain*, 2> chains{&view(0).lattice.chain(), &view(1).lattice.chain()};
     const GroupsOfBoth groups(chains);
     Bodies bodies;
@@ -97,14 +95,11 @@ class WorkcellPage {
                         {{view(0).robot.arm(), result_.arms[0].name, groups.of(0)},
                          {view(1).robot.arm(), result_.arms[1].name, groups.of(1)}});
     Json meeting = meetings(), conflict = conflict_json();
-    return {{"problem", name},
-            {"answer", words.answer},
-            {"result", std::move(json_)},
+    return {{"result", std::move(json_)},
             {"chain", chain_of_both(chains, names_of_arms(result_), groups)},
             {"ground", std::move(ground)},
             {"bodies", std::move(bodies.bodies)},
             {"visual", std::move(bodies.visual)},
-            {"unread", words.unread},
             {"meshes", std::move(bodies.meshes)},
             {"arms", std::move(arms)},
             {"near", near()},
@@ -324,12 +319,9 @@ class WorkcellPage {
 
 std::string to_workcell_page(const PlannedWorkcell& planned, const std::string& result_json,
                              const Budget& budget, const PageWords& words) {
-  const std::string name = std::filesystem::path(planned.cell.source).filename().string();
   WorkcellPage page(planned, result_json, budget);
-  Json data = page.data(name, words);
-  return fill(
-      workcell_template(), std::move(data),
-      {{"@@ANSWER@@", escaped_lines(name + "\n\n" + words.answer)}, {"@@MAP@@", page.maps()}});
+  Json data = page.data(words);
+  return filled_page(planned.cell.source, words, std::move(data), page.maps());
 }
 
 }  // namespace swivel
