@@ -49,7 +49,7 @@ struct Method {
 };
 
 json to_json(const PlanResult& result, const PathProblem& problem) {
-  const EpisodeRow row(0, result, problem);
+  const EpisodeRow row(0, answer_of(result), one_path(problem));
   json answer{{"status", to_string(result.status)}, {"ms", row.plan_ms},
               {"nodes", result.lattice.nodes},      {"reason", row.reason},
               {"fcl_calls", row.fcl_calls},         {"nodes_checked", row.nodes_checked}};

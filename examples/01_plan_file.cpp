@@ -9,7 +9,7 @@ int main(int argc, char** argv) {
       swivel::io::load_path_problem(argc > 1 ? argv[1] : "data/problems/experiment_a.yaml");
   const swivel::PlanResult result = swivel::plan(problem);
   if (result.status != swivel::PlanStatus::kSolved)
-    return std::cerr << words(result.diagnosis->cause) << '\n', 1;
+    return std::cerr << to_string(result.status) << '\n', 1;
   for (const swivel::TrajectoryRow& row : result.trajectory)
     std::cout << row.s << ": " << row.q.transpose() << '\n';
 }
