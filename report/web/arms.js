@@ -51,7 +51,7 @@ export class Arms {
     const rows = Array.from({ length: this.last + 1 }, (_, row) => `row ${row}`);
     this.nearness = new Nearness(near, this.both ? rows : placesOf(data.rows));
   }
-  /** The place on the slider, or that of one of several arms in its rows, at a time of the motion. */
+  /** The place on the slider, or that of one of several arms in its rows, at a motion's time. */
   placeAt(t, arm = 0) {
     const { motion } = this.paths[arm];
     return valueAt(motion.layers, indexAt(motion.t, t));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Bundles each page into one file, report.html, overview.html and placements.html; "@@DATA@@" in
 // them stands for the data. Argument: the folder that holds node_modules and gets the pages,
-// THIRD-PARTY.txt (the notices of all that was bundled, which the pages carry too) and bundle.d (what
-// was read).
+// THIRD-PARTY.txt (the notices of all that was bundled, which the pages carry too) and bundle.d
+// (what was read).
 import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import { createHash } from 'node:crypto';
 import { createRequire } from 'node:module';

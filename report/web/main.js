@@ -28,8 +28,8 @@ import { strokeName, Strokes } from './strokes.js';
 import { addTables, fillList, tellVerdict, warn } from './summary.js';
 import * as ofWorkcell from './workcelltables.js';
 
-// An answer has paths, each of which has rows, a map and plots: the one that was planned, the strokes
-// of a job, of which one is shown at a time (`showsOne`), or those of two arms.
+// An answer has paths, each of which has rows, a map and plots: the one that was planned, the
+// strokes of a job, of which one is shown at a time (`showsOne`), or those of two arms.
 const answer = data.strokes ? new Strokes(data) : new Arms(data),
   words = data.strokes ? ofJob : data.arms ? ofWorkcell : ofPath,
   { paths, showsOne, conflict } = answer,

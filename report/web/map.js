@@ -183,8 +183,8 @@ export function mapTitle(paths) {
   );
 }
 /**
- * How a map is to be read. beside: a path is drawn beside the refined one; ended: a line shows where
- * every path has ended.
+ * How a map is to be read. beside: a path is drawn beside the refined one; ended: a line shows
+ * where every path has ended.
  */
 function mapNote({ cells, result: { lattice }, beside, ended, label }) {
   const unseen = cells.count((state) => state === UNSEEN),

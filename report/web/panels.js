@@ -81,7 +81,7 @@ export class Panels {
    * path: { cells: Cells; rows: of the path; beside: rows of the path that it was refined from, or
    * of another one, or none; ended: whether all paths end where the rows do; label: stands before
    * the names of panels, where there are several paths; region: { runs: [{ layer, sheet, from, to
-   * }] } of cells where the arm bars the other, or none }; hover, pick: called with a cell, or null.
+   * }] } of cells where the arm bars the other, or none }; hover, pick: called with a cell or null.
    */
   constructor(host, { cells, rows, beside, ended, label, region }, hover, pick) {
     Object.assign(this, { cells, rows, beside, ended, label, region });

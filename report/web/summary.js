@@ -137,7 +137,7 @@ export function fillList({ title, columns, lines, count, tip }, pick) {
   });
 }
 
-/** Tables below the answer. tables: [caption, [name, value] of each line]; empty ones are left out. */
+/** Tables below the answer. tables: [caption, [name, value] of each line]; omitted if empty. */
 export function addTables(tables) {
   for (const [caption, entries] of tables) if (entries.length) table($('tables'), caption, entries);
 }
