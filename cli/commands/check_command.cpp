@@ -1,31 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cmath>
-#include <cstdint>
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "commands/check_job_command.hpp"
-#include "commands/workcell_command.hpp"
 #include "options/chosen_problem.hpp"
 #include "options/commands.hpp"
 #include "options/search_options.hpp"
 #include "output/check_output.hpp"
 #include "swivel/core/answer/answer_text.hpp"
-#include "swivel/core/base/angle.hpp"
-#include "swivel/core/kinematics/chain/arm.hpp"
-#include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/io/motions/motion.hpp"
 #include "swivel/planner/certificate/infeasibility_certificate.hpp"
-#include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/problem/given_answer.hpp"
+#include "swivel/planner/robot/motion_defaults.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
-#include "swivel/planner/verify/check.hpp"
-#include "swivel/planner/verify/complete_rows.hpp"
+#include "swivel/planner/workcell/check_workcell.hpp"
 #include "terminal/terminal.hpp"
 
 namespace swivel::cli {
@@ -39,66 +30,10 @@ struct CheckArguments {
   EpisodeChoice episode;
 };
 
-/// Prints what was proved, and how near it is to failing.
-void print_margins(const PathProblem& problem, const Chain& chain, const CheckResult& result) {
-  say("tool within %.2g m and %.2g rad of the path at rows", result.worst_position,
-      result.worst_angle);
-  // Where no row and the next could both be measured, nothing is known of what lies between.
-  if (result.largest_step > 0 || result.worst_path_error > 0 || result.worst_path_angle > 0) {
-    say(", within %.3f mm", 1e3 * result.worst_path_error);
-    if (problem.limits.tool_path_error)
-      say(" (allowed %.3f)", 1e3 * *problem.limits.tool_path_error);
-    say(" and %.3g rad", result.worst_path_angle);
-    if (problem.limits.tool_angle_error) say(" (allowed %.3g)", *problem.limits.tool_angle_error);
-    say(" between, joint moves within %s of what is allowed", percent(result.largest_step).c_str());
-  }
-  if (result.nearest_limit)
-    say(", '%s' %.2f deg from its limit at row %zu",
-        chain.joint_names[result.nearest_limit->joint].c_str(),
-        result.nearest_limit->by * 180 / kPi, result.nearest_limit->row);
-  if (result.nearest_slide_limit)
-    say(", '%s' %.2f mm from its limit at row %zu",
-        chain.joint_names[result.nearest_slide_limit->joint].c_str(),
-        1e3 * result.nearest_slide_limit->by, result.nearest_slide_limit->row);
-  if (result.min_clearance)
-    say(", clearance at least %.3f mm, %.3f mm more than asked", 1e3 * *result.min_clearance,
-        1e3 * *result.min_margin);
-  print_contact(result);
-  say(", cost %.9g\n", result.cost);
-  if (!result.motion) return;
-  const char* const names[] = {"speed", "acceleration", "jerk"};
-  say("motion: %.3f s, tool at most %.6g mm/s and %.4g rad/s", result.motion->duration,
-      1e3 * result.motion->tool_speed, result.motion->turn_speed);
-  for (std::size_t k = 0; k < 3; ++k)
-    say(", %s at most %.2f %% of what '%s' can do", names[k], 100 * result.motion->peaks[k].ratio,
-        chain.joint_names[static_cast<std::size_t>(result.motion->peaks[k].joint)].c_str());
-  say("\n");
-}
-
-/// Returns true if joint j of the chain may be at `value`, rad.
-bool within_limit(const Chain& chain, std::size_t j, double value) {
-  const JointLimit& limit = chain.limit[j];
-  return limit.continuous || (value >= limit.lower && value <= limit.upper);
-}
-
-/// Returns true if the joints of all rows are within their limits when read as degrees, while one
-/// of them, read as radians, the unit of every file of joints, is outside and beyond a whole turn.
-/// Joints in radians that are outside by little are within their limits as degrees, too.
-bool look_like_degrees(const Chain& chain, const std::vector<TrajectoryRow>& rows) {
-  bool beyond_a_turn = false;
-  for (const TrajectoryRow& row : rows)
-    for (std::size_t j = 0; j < kDof; ++j) {
-      const double value = row.q[static_cast<Eigen::Index>(j)];
-      if (!within_limit(chain, j, value / kDegrees)) return false;
-      beyond_a_turn |= !within_limit(chain, j, value) && std::abs(value) > 2 * kPi;
-    }
-  return beyond_a_turn;
-}
-
-/// Verifies a certificate and prints the verdict behind `prefix`. Prints nothing where it
-/// throws.
-int run_on_certificate(const PathProblem& problem, const InfeasibilityCertificate& certificate,
-                       const std::string& prefix = {}) {
+/// Verifies that one run has no path, and prints the verdict behind `prefix`. Prints nothing where
+/// it throws.
+int verdict_on_run(const PathProblem& problem, const InfeasibilityCertificate& certificate,
+                   const std::string& prefix) {
   catch_interrupts();
   CertificateCheck result;
   std::vector<HeldJoint> held;
@@ -126,6 +61,33 @@ int run_on_certificate(const PathProblem& problem, const InfeasibilityCertificat
   return kOk;
 }
 
+/// Verifies that two arms have no plan, and prints the verdict. Prints nothing where it throws.
+int verdict_on_two_arms(const Problem& problem, const WorkcellCertificate& certificate) {
+  catch_interrupts();
+  WorkcellCertificateCheck result;
+  try {
+    const Budget budget(std::nullopt, &interrupted);
+    const PreparedWorkcell prepared(problem, budget);
+    for (std::size_t k = 0; k < 2; ++k) warn_of_held(prepared.robot(k).arm().held);
+    result = verify_certificate(prepared, certificate, budget);
+  } catch (const Stopped&) {
+    say("stopped\n");
+    return kStopped;
+  }
+  if (!result.passed) {
+    say("failed: this certificate proves nothing\n  %s\n", result.failure.c_str());
+    return kNo;
+  }
+  say("passed: no two paths without conflict at this resolution%s: %lld region%s of conflict, %lld "
+      "cut%s; %lld pairs of nodes or motions of both arms, %lld nodes and %lld edges asked\n",
+      result.complete ? "" : ", among the solutions that were found",
+      static_cast<long long>(result.regions), result.regions == 1 ? "" : "s",
+      static_cast<long long>(result.cuts), result.cuts == 1 ? "" : "s",
+      static_cast<long long>(result.pairs), static_cast<long long>(result.nodes),
+      static_cast<long long>(result.edges));
+  return kOk;
+}
+
 /// Throws InputError unless there is either a trajectory or a certificate.
 void require_one_file(const CheckArguments& arguments) {
   if (arguments.trajectory.empty() == arguments.certificate.empty())
@@ -133,35 +95,6 @@ void require_one_file(const CheckArguments& arguments) {
         arguments.certificate.empty()
             ? "trajectory: is missing: allowed is a file, or --certificate FILE"
             : "--certificate: there is a trajectory as well: allowed is one of the two");
-}
-
-int run_on_job(const CheckArguments& arguments, const Problem& job) {
-  if (arguments.certificate.empty())
-    return check_job_file(job, arguments.trajectory, arguments.speed);
-  const InfeasibilityCertificate certificate = io::load_certificate(arguments.certificate);
-  const auto stroke = find_stroke(job, certificate.stroke);
-  if (!stroke)
-    throw InputError(arguments.certificate, "stroke: '" + certificate.stroke +
-                                                "' is none of the job: allowed are the names of "
-                                                "its strokes");
-  if (job.arm().strokes[*stroke].reversible)
-    throw InputError(arguments.certificate,
-                     "stroke: '" + certificate.stroke +
-                         "' is reversible, and a certificate is of one direction: allowed are "
-                         "strokes that are not reversible");
-  if (certificate.reversed && !job.arm().strokes[*stroke].reversible)
-    throw InputError(arguments.certificate, "reversed: stroke '" + certificate.stroke +
-                                                "' is not `reversible`: allowed is a certificate "
-                                                "of it forwards");
-  const PathProblem problem = problem_of_run(job, {*stroke, certificate.reversed});
-  return run_on_certificate(
-      problem, certificate,
-      "stroke '" + certificate.stroke + (certificate.reversed ? "' backwards: " : "': "));
-}
-
-int run_on_workcell(const CheckArguments& arguments, const Problem& cell) {
-  if (!arguments.certificate.empty()) return check_workcell_proof(cell, arguments.certificate);
-  return check_workcell_file(cell, arguments.trajectory);
 }
 
 /// Throws InputError for a --speed that is no speed, or is not of the motion of a job.
@@ -176,59 +109,66 @@ void require_speed_of_job(const CheckArguments& arguments, bool is_job) {
         "allowed are jobs; elsewhere `limits.tool_speed` bounds the speed");
 }
 
+/// Returns the stroke of the problem that a certificate is about, which is not reversible. Throws
+/// InputError in the name of its file.
+std::size_t stroke_of(const InfeasibilityCertificate& certificate, const Problem& problem,
+                      const std::string& file) {
+  const auto refuse = [&](const std::string& what) { throw InputError(file, what); };
+  const std::string& name = certificate.stroke;
+  if (is_path(problem)) {
+    if (!name.empty())
+      refuse("stroke: is of stroke '" + name +
+             "' of a job: allowed is a problem file with strokes");
+    return 0;
+  }
+  const auto stroke = find_stroke(problem, name);
+  if (!stroke)
+    refuse("stroke: '" + name + "' is none of the job: allowed are the names of its strokes");
+  if (problem.arm().strokes[*stroke].reversible)
+    refuse("stroke: '" + name +
+           "' is reversible, and a certificate is of one direction: allowed are strokes that are "
+           "not reversible");
+  if (certificate.reversed)
+    refuse("reversed: stroke '" + name +
+           "' is not `reversible`: allowed is a certificate of it forwards");
+  return *stroke;
+}
+
+/// Verifies the certificate in a file and prints the verdict. Returns the exit code. Throws
+/// InputError.
+int check_certificate(const Problem& problem, const std::string& file) {
+  if (problem.arms.size() == 2)
+    return verdict_on_two_arms(problem, io::load_workcell_certificate(file));
+  const InfeasibilityCertificate certificate = io::load_certificate(file);
+  const std::size_t stroke = stroke_of(certificate, problem, file);
+  return verdict_on_run(problem_of_run(problem, {stroke, false}), certificate,
+                        is_path(problem) ? "" : "stroke '" + certificate.stroke + "': ");
+}
+
+/// Checks the trajectory or the motion in a file and prints the verdict. Returns the exit code.
+/// Throws InputError.
+int check_rows(const Problem& problem, const CheckArguments& arguments) {
+  const std::string& file = arguments.trajectory;
+  std::optional<PreparedProblem> prepared(problem);
+  for (std::size_t k = 0; k < prepared->arms(); ++k) warn_of_held(prepared->robot(k).arm().held);
+  GivenAnswer given = io::load_answer(file, problem, prepared->joint_names());
+  if (arguments.speed && !given.has_times())
+    throw InputError(file, "has no times: allowed with --speed are motions of jobs");
+  if (given.has_times() && prepared->has_two_arms())
+    prepared.emplace(with_motion_defaults(problem));
+  given = in_the_name_of(file, [&] { return complete_answer(*prepared, std::move(given)); });
+  const AnswerCheck check = check_answer(*prepared, given, {.speed = arguments.speed});
+  print_check(check, given, *prepared);
+  return check.passed ? kOk : kNo;
+}
+
 int run(const CheckArguments& arguments) {
   const Problem file = io::load_problem(arguments.problem);
   require_speed_of_job(arguments, file.arms.size() == 1 && !is_path(file));
   require_one_file(arguments);
-  const Problem chosen = chosen_problem(file, arguments.lattice, arguments.episode);
-  if (chosen.arms.size() == 2) return run_on_workcell(arguments, chosen);
-  if (!is_path(chosen)) return run_on_job(arguments, chosen);
-  const PathProblem problem = problem_of_run(chosen, {0, false});
-  if (!arguments.certificate.empty()) {
-    const InfeasibilityCertificate certificate = io::load_certificate(arguments.certificate);
-    if (!certificate.stroke.empty())
-      throw InputError(arguments.certificate, "stroke: is of stroke '" + certificate.stroke +
-                                                  "' of a job: allowed is a problem file with "
-                                                  "strokes");
-    return run_on_certificate(problem, certificate);
-  }
-  const PreparedRobot robot(problem);
-  const Chain& chain = robot.arm().chain;
-  const std::vector<HeldJoint>& held = robot.arm().held;
-  warn_of_held(held);
-  const io::TrajectoryFile read = io::load_trajectory_file(arguments.trajectory, chain.joint_names);
-  const auto& rows = read.rows;
-  const auto complete = [&](const auto& work) {
-    return in_the_name_of(arguments.trajectory, work);
-  };
-  const CheckResult result =
-      read.timed.empty()
-          ? check_trajectory(robot, problem, complete([&] {
-                               return complete_rows(robot, problem, rows, read.stated);
-                             }))
-          : check_motion(robot, problem, complete([&] {
-                           return complete_motion(robot, problem, read.timed, read.stated);
-                         }));
-  say("%s: %zu rows", result.passed ? "passed" : "failed", rows.size());
-  if (!result.passed)
-    say(", %lld failure%s", static_cast<long long>(result.failure_count),
-        result.failure_count == 1 ? "" : "s");
-  if (result.rounded) say(", on the path as motions follow it, its corners rounded");
-  if (!held.empty()) say(", held: %s", words(held).c_str());
-  say("; ");
-  const bool all = result.rows_examined == static_cast<std::int64_t>(rows.size());
-  if (result.rows_examined == 0 && result.worst_position == 0) {
-    say("no row could be measured\n");
-  } else {
-    if (!all) say("of the rows that could be measured: ");
-    print_margins(problem, chain, result);
-  }
-  const bool asks_speed = problem.limits.tool_speed || problem.limits.tool_turn_speed;
-  if (read.timed.empty() && asks_speed) say("%s", kSpeedsNotChecked);
-  if (look_like_degrees(chain, rows))
-    say("  joints would be within their limits as degrees: allowed are radians\n");
-  print_failures(result.failures, result.failure_count);
-  return result.passed ? kOk : kNo;
+  const Problem problem = chosen_problem(file, arguments.lattice, arguments.episode);
+  return arguments.certificate.empty() ? check_rows(problem, arguments)
+                                       : check_certificate(problem, arguments.certificate);
 }
 
 }  // namespace

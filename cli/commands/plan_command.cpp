@@ -135,10 +135,8 @@ void read_motion(PlanRequest& request) {
     return;
   }
   if (!strokes) return;
-  const JobTimingOptions timing = arguments.motion.job_timing();
-  require_speeds(problem, timing);
-  request.asked.timing = {
-      .speed = timing.speed.value_or(0), .turn_speed = timing.turn_speed, .rate = timing.rate};
+  request.asked.timing = arguments.motion.timing_of_strokes();
+  require_speeds(problem, *request.asked.timing);
 }
 
 /// Throws InputError if options contradict each other, or need what this build lacks.

@@ -3,18 +3,16 @@
 #include <optional>
 #include <stdexcept>
 
-#include "commands/time_job_command.hpp"
-#include "commands/workcell_command.hpp"
 #include "options/chosen_problem.hpp"
 #include "options/commands.hpp"
 #include "options/search_options.hpp"
+#include "output/answer_output.hpp"
 #include "output/motion_output.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/planner/refine/motion.hpp"
-#include "swivel/planner/refine/refine.hpp"
-#include "swivel/planner/robot/prepared_robot.hpp"
-#include "swivel/planner/verify/check.hpp"
-#include "swivel/planner/verify/complete_rows.hpp"
+#include "swivel/planner/job/time_job.hpp"
+#include "swivel/planner/problem/time_answer.hpp"
+#include "swivel/planner/robot/motion_defaults.hpp"
 #include "terminal/terminal.hpp"
 
 namespace swivel::cli {
@@ -30,101 +28,62 @@ struct TimeArguments {
   bool quiet = false, refine = false, no_check = false;
 };
 
-/// Returns a path's rows after refinement, which moves them off the nodes of the lattice, on the
-/// path that the motion follows.
-std::vector<TrajectoryRow> refined(const PreparedRobot& robot, const PathProblem& problem,
-                                   const std::vector<TrajectoryRow>& rows, bool quiet) {
-  const PathProblem smoothed = with_motion_defaults(problem);
-  const Refined result = refine(robot, smoothed, rows_on_path(robot, smoothed, rows), {},
-                                Budget(std::nullopt, &interrupted));
-  if (!quiet) print_refined(result);
-  return result.rows;
-}
-
-int run_on_job(const TimeArguments& arguments, const Problem& job,
-               std::optional<io::InputFiles>& noted) {
-  refuse_options(job, job.source,
+/// Returns how the command line asks for a motion of the problem. Throws InputError for what is not
+/// supported of it, and where there is no speed.
+MotionRequest request_of(const TimeArguments& arguments, const Problem& problem) {
+  const bool strokes = problem.arms.size() == 1 && !is_path(problem);
+  if (!strokes)
+    return {.refine = arguments.refine,
+            .timing = arguments.motion.timing(limits_of_speeds(problem))};
+  refuse_options(problem, problem.source,
                  {{arguments.refine, "--refine"}, {arguments.motion.chord.has_value(), "--chord"}});
-  JobTimeRequest request{.job = job,
-                         .timing = arguments.motion.job_timing(),
-                         .trajectory = arguments.trajectory,
-                         .out = arguments.out,
-                         .quiet = arguments.quiet,
-                         .check = !arguments.no_check};
-  require_speeds(request.job, request.timing);
-  return time_job_file(request, noted);
-}
-
-int run_on_workcell(const TimeArguments& arguments, const Problem& cell,
-                    std::optional<io::InputFiles>& noted) {
-  const WorkcellTimeRequest request{.timing = arguments.motion.timing(limits_of_speeds(cell)),
-                                    .cell = cell,
-                                    .trajectory = arguments.trajectory,
-                                    .out = arguments.out,
-                                    .refine = arguments.refine,
-                                    .quiet = arguments.quiet,
-                                    .check = !arguments.no_check};
-  return time_workcell_file(request, noted);
+  const TimingOptions timing = arguments.motion.timing_of_strokes();
+  require_speeds(problem, timing);
+  return {.timing = timing};
 }
 
 int run(const TimeArguments& arguments) {
   require_motion_formats(arguments.out);
   std::optional<io::InputFiles> noted(std::in_place);
-  const Problem chosen =
+  const Problem problem =
       chosen_problem(io::load_problem(arguments.problem), arguments.lattice, arguments.episode);
-  if (chosen.arms.size() == 2) return run_on_workcell(arguments, chosen, noted);
-  if (!is_path(chosen)) return run_on_job(arguments, chosen, noted);
-  const PathProblem problem = problem_of_run(chosen, {0, false});
-  const TimingOptions options = arguments.motion.timing(problem.limits);
-  const PreparedRobot robot(problem);
-  if (!arguments.quiet) warn_of_held(robot.arm().held);
-  const io::JointNames& names = robot.arm().chain.joint_names;
-  const io::TrajectoryFile file = io::load_trajectory_file(arguments.trajectory, names);
+  const MotionRequest asked = request_of(arguments, problem);
+  const PreparedProblem prepared(problem.arms.size() == 2 ? with_motion_defaults(problem)
+                                                          : problem);
+  if (!arguments.quiet)
+    for (std::size_t k = 0; k < prepared.arms(); ++k) warn_of_held(prepared.robot(k).arm().held);
+  GivenAnswer given = io::load_answer(arguments.trajectory, problem, prepared.joint_names());
+  const Problem executed = given.problem;
   io::OutputFiles outputs(noted->files());
   noted.reset();
   for (const std::string& out : arguments.out) outputs.add("--out", out);
   catch_interrupts();
-  std::optional<MotionResult> timed;
+  std::optional<TimedAnswer> timed;
   try {
     timed = in_the_name_of(arguments.trajectory, [&] {
-      const Budget budget(std::nullopt, &interrupted);
-      // The rows of a motion are at points of the path with rounded corners.
-      const PathProblem of_rows = file.timed.empty() ? problem : with_motion_defaults(problem);
-      std::vector<TrajectoryRow> rows =
-          rows_at_layers(robot, of_rows, file.rows, file.stated, budget);
-      if (arguments.refine)
-        rows = refined(robot, problem, rows, arguments.quiet || outputs.takes_standard_output());
-      MotionResult result = time_trajectory(robot, problem, rows, options, budget);
-      if (result.motion && !arguments.no_check)
-        require_passed(check_motion(robot, problem, result.motion->rows,
-                                    {.margins = false, .budget = budget}));
-      return result;
+      return time_answer(prepared, std::move(given), asked, !arguments.no_check,
+                         Budget(std::nullopt, &interrupted));
     });
   } catch (const Stopped&) {
-    outputs.remove("--out");
   } catch (const std::logic_error&) {
     outputs.remove("--out");
-    outputs.stage();
-    report_removed(outputs.commit(), "there is no answer now");
+    deliver(outputs, "there is no answer now", [] {});
     throw;
   }
-  if (timed && timed->motion) {
-    outputs.write_each("--out", [&](const std::filesystem::path& out) {
-      return io::motion_text(*timed->motion, names, problem.base_link, out);
-    });
-  } else {
+  const bool executable = timed && timed->answer.timed() != nullptr && timed->fault.empty();
+  if (!executable)
     outputs.remove("--out");
-  }
-  outputs.stage();
-  if (!timed)
-    say("stopped\n");
-  else if (timed->failure)
-    say("not executable: s = %.4f m: %s\n", timed->failure->s, timed->failure->reason.c_str());
-  else if (!arguments.quiet && !outputs.takes_standard_output())
-    print_motion(*timed->motion, names);
-  flush_standard_output();
-  report_removed(outputs.commit(), !timed ? "the work was stopped" : "there is no motion now");
-  return !timed ? kStopped : timed->motion ? kOk : kNo;
+  else
+    outputs.write_each("--out", [&](const std::filesystem::path& out) {
+      return io::motion_text(timed->answer, executed, out);
+    });
+  deliver(outputs, timed ? "there is no motion now" : "the work was stopped", [&] {
+    if (!timed) return say("stopped\n");
+    if (!timed->fault.empty()) return say("not executable: %s\n", timed->fault.c_str());
+    const bool quiet = arguments.quiet || outputs.takes_standard_output();
+    if (!quiet || !executable) print_timed(timed->answer, executed, quiet);
+  });
+  return !timed ? kStopped : executable ? kOk : kNo;
 }
 
 }  // namespace

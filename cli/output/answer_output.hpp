@@ -20,4 +20,9 @@ void print_answer(const Answer& answer, const Problem& problem,
                   const std::optional<AnyAdvice>& advice,
                   const std::optional<AnyCertificate>& certificate, std::size_t bytes);
 
+/// Prints what timing made of an answer: its refinement unless `quiet`, the main figures of its
+/// motion or why there is none, and the warnings of the motion on standard error. `problem` is
+/// executed_problem() of the answer.
+void print_timed(const Answer& answer, const Problem& problem, bool quiet);
+
 }  // namespace swivel::cli

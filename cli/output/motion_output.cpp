@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "output/motion_output.hpp"
 
+#include <algorithm>
+
 #include "options/commands.hpp"
 #include "options/search_options.hpp"
 #include "swivel/core/messages/input_error.hpp"
@@ -37,10 +39,10 @@ TimingOptions MotionOptions::timing(const Limits& limits) const {
   return options;
 }
 
-JobTimingOptions MotionOptions::job_timing() const {
+TimingOptions MotionOptions::timing_of_strokes() const {
   if (chord)
     throw InputError("--chord: is not supported yet for jobs: allowed are problems with one path");
-  JobTimingOptions options;
+  TimingOptions options;
   if (speed) options.speed = positive(*speed, "--speed");
   if (turn_speed) options.turn_speed = positive(*turn_speed, "--turn-speed");
   options.rate = checked_rate();
@@ -53,6 +55,15 @@ double MotionOptions::checked_rate() const {
   if (!(asked > 0 && asked <= kMostRate))
     throw InputError("--rate: " + shortest(asked) + ": allowed are numbers > 0, at most 100000");
   return asked;
+}
+
+Limits limits_of_speeds(const Problem& problem) {
+  if (is_path(problem)) return problem.arm().path().limits;
+  Limits limits;
+  for (const ArmTask& arm : problem.arms)
+    if (const auto& speed = arm.path().limits.tool_speed)
+      limits.tool_speed = std::min(*speed, limits.tool_speed.value_or(*speed));
+  return limits;
 }
 
 void add_out_option(CLI::App& command, std::vector<std::string>& files, const std::string& help) {
@@ -115,40 +126,6 @@ void warn_of(const Motion& motion) {
     for (const std::string& warning : arm.warnings)
       complain("swivel: warning: %s%s\n",
                arm.name.empty() ? "" : ("arm '" + arm.name + "': ").c_str(), warning.c_str());
-}
-
-void print_motion(const TimedPath& motion, const io::JointNames& joint_names) {
-  const auto name = [&](int joint) { return joint_names[static_cast<std::size_t>(joint)].c_str(); };
-  say("motion: %.3f s at %g mm/s (%.3f s at that speed throughout), %zu samples at %g Hz\n",
-      motion.rows.back().t, 1e3 * motion.speed, motion.ideal, motion.rows.size(), motion.rate);
-  for (const JointRate rate : {JointRate::kSpeed, JointRate::kAcceleration, JointRate::kJerk}) {
-    const auto& peaks = motion.peaks[static_cast<std::size_t>(rate)];
-    const TimedPath::Peak* most = &peaks[0];
-    for (const TimedPath::Peak& peak : peaks)
-      if (peak.ratio > most->ratio) most = &peak;
-    say("  %s at most %s of the limit: '%s' at s = %.4f m, t = %.3f s\n", to_string(rate),
-        percent(most->ratio).c_str(), name(most->joint), most->s, most->t);
-  }
-  for (const TimedPath::Slow& slow : motion.slow) {
-    say("  slower from s = %.4f to %.4f m (t = %.3f to %.3f s): %s of the speed at least, for the "
-        "%s of '%s'",
-        slow.from_s, slow.to_s, slow.from_t, slow.to_t, percent(slow.share).c_str(),
-        to_string(slow.reason), name(slow.joint));
-    if (!slow.singular.empty())
-      say("; the %s is %.1f deg from singular", slow.singular.c_str(),
-          slow.singular_angle * 180 / kPi);
-    say("\n");
-  }
-  if (motion.rounded > 0)
-    say("  %d corner%s rounded, within %.3g mm and %.3g mrad\n", motion.rounded,
-        motion.rounded == 1 ? "" : "s", 1e3 * motion.rounded_position, 1e3 * motion.rounded_angle);
-  for (const TimedPath::Stop& stop : motion.stops)
-    say("  stops at waypoint %d, s = %.4f m, t = %.3f s: the corner may not be rounded\n",
-        stop.waypoint, stop.s, stop.t);
-  say("  between samples the tool is within %.3g um and %.3g urad of its path\n",
-      1e6 * motion.between_position, 1e6 * motion.between_angle);
-  for (const std::string& warning : motion.warnings)
-    complain("swivel: warning: %s\n", warning.c_str());
 }
 
 }  // namespace swivel::cli

@@ -23,9 +23,10 @@ struct MotionOptions {
   /// Returns the timing that the options ask for, with the tool speeds of `limits` where none are
   /// given. Throws InputError if there is no speed.
   [[nodiscard]] TimingOptions timing(const Limits& limits) const;
-  /// Returns the timing of jobs that the options ask for. Strokes whose speed is not given have
-  /// that of the problem file. Throws InputError for --chord, which is of problems with one path.
-  [[nodiscard]] JobTimingOptions job_timing() const;
+  /// Returns the timing of strokes that the options ask for: with speed 0, for which strokes have
+  /// that of the problem file, without --speed. Throws InputError for --chord, which is of problems
+  /// with one path.
+  [[nodiscard]] TimingOptions timing_of_strokes() const;
   /// Returns true if a motion of a job is asked for, by --speed, --turn-speed or --rate.
   [[nodiscard]] bool ask_for_job_motion() const { return speed || turn_speed || rate; }
 
@@ -33,6 +34,10 @@ struct MotionOptions {
   /// Returns --rate, or its default. Throws InputError.
   [[nodiscard]] double checked_rate() const;
 };
+
+/// Returns the speeds of the tool that bound a motion whose speed the command line does not give:
+/// the limits of one path, and of two arms the lowest tool_speed that one has.
+[[nodiscard]] Limits limits_of_speeds(const Problem& problem);
 
 /// Adds the option --out, which may be given several times, each with one name.
 void add_out_option(CLI::App& command, std::vector<std::string>& files, const std::string& help);
@@ -53,8 +58,5 @@ void print_refined_and_timed(const Answer& answer);
 
 /// Prints the warnings of a motion on standard error.
 void warn_of(const Motion& motion);
-
-/// Prints the main figures of a motion on standard output, and warnings on standard error.
-void print_motion(const TimedPath& motion, const io::JointNames& joint_names);
 
 }  // namespace swivel::cli

@@ -27,8 +27,8 @@ PreparedRobot prepared(const swivel::Problem& job, const std::stop_token& stop) 
   return PreparedRobot(problem_of_run(job, {0, false}), Budget({}, nullptr, stop));
 }
 
-JobTimingOptions timing_of(std::optional<double> speed, std::optional<double> turn_speed,
-                           double rate) {
+TimingOptions timing_of(std::optional<double> speed, std::optional<double> turn_speed,
+                        double rate) {
   for (const auto& [value, name, unit] :
        {std::tuple(speed, "speed", "m/s"), std::tuple(turn_speed, "turn_speed", "rad/s")})
     if (value && !(*value > 0))
@@ -36,8 +36,8 @@ JobTimingOptions timing_of(std::optional<double> speed, std::optional<double> tu
                             ": not a positive number: allowed are values above 0, " + unit);
   if (!(rate > 0 && rate <= 1e5))
     throw py::value_error("rate: allowed are numbers > 0, at most 100000");
-  JobTimingOptions options;
-  options.speed = speed, options.turn_speed = turn_speed, options.rate = rate;
+  TimingOptions options;
+  options.speed = speed.value_or(0), options.turn_speed = turn_speed, options.rate = rate;
   return options;
 }
 
@@ -191,10 +191,10 @@ std::variant<Parts, JobMotion> load_rows(const PreparedRobot& robot, const swive
 }
 
 /// `job`: with the lift-offs of the parts.
-JobCheckResult check_parts(const PreparedRobot& robot, const swivel::Problem& job,
-                           const Parts& parts, const CheckOptions& options) {
+AnswerCheck check_parts(const PreparedRobot& robot, const swivel::Problem& job, const Parts& parts,
+                        const CheckOptions& options) {
   const std::vector<swivel::Part> all = to_core(job, parts);
-  JobCheckResult result = swivel::check_job(robot, job, all, options);
+  AnswerCheck result = swivel::check_job(robot, job, all, options);
   std::vector<std::vector<bool>> process;
   for (const JobPart& part : parts) process.push_back(part.process);
   check_process(job, all, process, result);
@@ -203,8 +203,8 @@ JobCheckResult check_parts(const PreparedRobot& robot, const swivel::Problem& jo
 
 /// Checks a motion whose strokes are numbered as in the job that it was made for. `job`: with the
 /// lift-offs of the motion.
-JobCheckResult check_timed(const PreparedRobot& robot, const swivel::Problem& job,
-                           const JobMotion& motion, const CheckOptions& options) {
+AnswerCheck check_timed(const PreparedRobot& robot, const swivel::Problem& job,
+                        const JobMotion& motion, const CheckOptions& options) {
   const auto number = [&](std::size_t k) {
     return stroke_of(job, motion.job->arm().strokes[k].name);
   };
@@ -243,8 +243,7 @@ JobCheck check(const JobOrFile& of, const Checked& rows, std::optional<double> s
   });
 }
 
-JobPlan plan(const JobOrFile& of, PlanOptions options,
-             const std::optional<JobTimingOptions>& timing) {
+JobPlan plan(const JobOrFile& of, PlanOptions options, const std::optional<TimingOptions>& timing) {
   const swivel::Problem job = to_core(of);
   JobPlan plan;
   plan.plan = std::make_shared<const Answer>(interruptible([&](const std::stop_token& stop) {
@@ -273,7 +272,7 @@ ProvedParts proved_parts(const PreparedRobot& robot, const swivel::Problem& of,
   CheckOptions options;
   options.margins = false, options.budget = budget;
   std::string source;
-  const auto require = [&](const JobCheckResult& check) {
+  const auto require = [&](const AnswerCheck& check) {
     if (!check.passed)
       throw InputError(source,
                        check.failures.front() + ": allowed is a job that passes check_job()");
@@ -303,7 +302,7 @@ ProvedParts proved_parts(const PreparedRobot& robot, const swivel::Problem& of,
   return proved;
 }
 
-JobMotion time(const JobOrFile& of, const Timeable& rows, const JobTimingOptions& timing,
+JobMotion time(const JobOrFile& of, const Timeable& rows, const TimingOptions& timing,
                std::optional<double> timeout) {
   if (timeout && !(*timeout > 0))
     throw py::value_error("timeout: not a positive number: allowed are values above 0, or None");
@@ -330,8 +329,9 @@ JobMotion time(const JobOrFile& of, const Timeable& rows, const JobTimingOptions
     if (!result->motion) return motion;
     // Motions keep more clearance between rows than trajectories do: transitions may lack it.
     CheckOptions options;
-    options.margins = false, options.budget = budget, options.speed = timing.speed;
-    const JobCheckResult check = check_timed(robot, job, motion, options);
+    options.margins = false, options.budget = budget;
+    if (timing.speed > 0) options.speed = timing.speed;
+    const AnswerCheck check = check_timed(robot, job, motion, options);
     if (check.passed) return motion;
     motion.fault = check.failures.front();
     result->motion.reset();
@@ -353,9 +353,9 @@ void bind_plan_job(py::module_& m) {
         PlanOptions options = to_plan_options(planner, threads, timeout, prove);
         if (evidence) options.evidence = Evidence::all();
         options.progress = to_progress(progress);
-        std::optional<JobTimingOptions> timing;
+        std::optional<TimingOptions> timing;
         if (speed || turn_speed || rate)
-          timing = timing_of(speed, turn_speed, rate.value_or(JobTimingOptions().rate));
+          timing = timing_of(speed, turn_speed, rate.value_or(TimingOptions().rate));
         return plan(job, options, timing);
       },
       py::arg("job").none(false), py::kw_only(), py::arg("planner") = "parallel",
@@ -395,7 +395,7 @@ void bind_job_functions(py::module_& m) {
       },
       py::arg("job").none(false), py::arg("rows").none(false), py::kw_only(),
       py::arg("speed") = py::none(), py::arg("turn_speed") = py::none(),
-      py::arg("rate") = JobTimingOptions().rate, py::arg("timeout") = py::none(),
+      py::arg("rate") = TimingOptions().rate, py::arg("timeout") = py::none(),
       (std::string("Makes the rows of a job a motion in time, and proves it: JobMotion. plan_job() "
                    "with a speed or a rate plans rows that are sure to keep what motions keep.\n\n"
                    "job: a Job, or the name of its file. rows: a JobPlan, a list of JobParts, or "

@@ -47,7 +47,7 @@ struct JobPlan {
   /// The job's strokes, home and order, by which the answer is written; without robot and scene.
   /// Runs between lift-offs are strokes of their own.
   std::shared_ptr<const swivel::Problem> job;
-  std::optional<JobTimingOptions> timing = {};  ///< set where a motion was asked for
+  std::optional<TimingOptions> timing = {};  ///< set where a motion was asked for
   /// The job as it was given, of which reports are made. Null after unpickling.
   std::shared_ptr<const swivel::Problem> given = nullptr;
   [[nodiscard]] const Answer& result() const { return *plan; }
@@ -65,7 +65,7 @@ struct JobMotion {
 };
 
 struct JobCheck {
-  JobCheckResult result;
+  AnswerCheck result;
   io::JointNames joint_names;
 };
 

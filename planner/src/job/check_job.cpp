@@ -44,7 +44,7 @@ class JobCheck {
     query_.emplace(*world_, options.margins ? DistanceProofs::kOff : DistanceProofs::kOn);
   }
 
-  JobCheckResult run() {
+  AnswerCheck run() {
     if (examine_order())
       for (std::size_t k = 0; k < parts_.size(); ++k)
         parts_[k].run ? examine_run(k) : examine_transition(k);
@@ -248,13 +248,13 @@ class JobCheck {
   std::optional<World> world_;
   EdgeRule rule_;
   std::optional<World::Query> query_;
-  JobCheckResult result_;
+  AnswerCheck result_;
 };
 
 }  // namespace
 
-JobCheckResult check_job(const PreparedRobot& robot, const Problem& job,
-                         const std::vector<Part>& parts, const CheckOptions& options) {
+AnswerCheck check_job(const PreparedRobot& robot, const Problem& job,
+                      const std::vector<Part>& parts, const CheckOptions& options) {
   validate(job);
   robot.require_prepared_for(problem_of_run(job, {0, false}));
   return JobCheck(robot, job, parts, options).run();
@@ -293,9 +293,9 @@ std::optional<std::string> fault_of_events(const Problem& job, const std::vector
 
 }  // namespace
 
-JobCheckResult check_job_motion(const PreparedRobot& robot, const Problem& given,
-                                const std::vector<StrokeRun>& order, const ArmMotion& motion,
-                                const CheckOptions& options) {
+AnswerCheck check_job_motion(const PreparedRobot& robot, const Problem& given,
+                             const std::vector<StrokeRun>& order, const ArmMotion& motion,
+                             const CheckOptions& options) {
   validate(given);
   robot.require_prepared_for(problem_of_run(given, {0, false}));
   const Problem job = with_motion_defaults(given);
@@ -313,7 +313,7 @@ JobCheckResult check_job_motion(const PreparedRobot& robot, const Problem& given
   }
   for (std::size_t k = 0; k < count; ++k)
     for (const TimedRow& row : timed[k]) parts[k].rows.push_back(row.row);
-  JobCheckResult result = JobCheck(robot, job, parts, options, &timed).run();
+  AnswerCheck result = JobCheck(robot, job, parts, options, &timed).run();
   if (const auto fault = fault_of_events(job, order, motion)) {
     result.failures.push_back(*fault);
     ++result.failure_count;
@@ -323,7 +323,7 @@ JobCheckResult check_job_motion(const PreparedRobot& robot, const Problem& given
 }
 
 void check_process(const Problem& job, const std::vector<Part>& parts,
-                   const std::vector<std::vector<bool>>& process, JobCheckResult& result) {
+                   const std::vector<std::vector<bool>>& process, AnswerCheck& result) {
   if (process.size() != parts.size())
     throw InvalidArgument(formatted("process: of %zu parts: allowed is one item for each of %zu",
                                     process.size(), parts.size()));
@@ -344,11 +344,6 @@ void check_process(const Problem& job, const std::vector<Part>& parts,
     ++result.failure_count;
     result.passed = false;
   }
-}
-
-void require_passed(const JobCheckResult& result) {
-  if (!result.passed)
-    throw std::logic_error("the job does not pass its own check: " + result.failures.at(0));
 }
 
 bool begins_at_last_waypoint(const PreparedRobot& robot, const Problem& job, std::size_t stroke,

@@ -803,7 +803,7 @@ Answer plan_job(const Problem& job, const PlanOptions& options) {
 }
 
 Answer plan_job_motion(const PreparedRobot& robot, const Problem& job, const PlanOptions& options,
-                       const JobTimingOptions& timing, ProblemView* view) {
+                       const TimingOptions& timing, ProblemView* view) {
   validate(job);
   require_supported(options, "jobs");
   require_speeds(job, timing);
@@ -814,8 +814,7 @@ Answer plan_job_motion(const PreparedRobot& robot, const Problem& job, const Pla
       robot, completed, options, budget, view, [&](const Problem& one, ProblemView* its_view) {
         return plan_executable(robot, one, options, budget, its_view);
       });
-  answer.timing = {
-      .speed = timing.speed.value_or(0), .turn_speed = timing.turn_speed, .rate = timing.rate};
+  answer.timing = timing;
   if (!answer.has_rows()) return answer;
   const Problem executed = executed_problem(completed, answer);
   try {
@@ -825,8 +824,11 @@ Answer plan_job_motion(const PreparedRobot& robot, const Problem& job, const Pla
     if (const Motion* const motion = answer.timed(); options.check && motion != nullptr) {
       std::vector<StrokeRun> order;
       for (const RunAnswer& run : answer.arm().runs) order.push_back(run.run);
-      require_passed(check_job_motion(robot, executed, order, motion->arms.front(),
-                                      {.margins = false, .budget = budget, .speed = timing.speed}));
+      require_passed(check_job_motion(
+          robot, executed, order, motion->arms.front(),
+          {.margins = false,
+           .budget = budget,
+           .speed = timing.speed > 0 ? std::optional(timing.speed) : std::nullopt}));
       answer.time_ms["check motion"] = watch.lap();
     }
   } catch (const Stopped&) {

@@ -21,10 +21,16 @@ namespace swivel {
 
 namespace {
 
+/// Returns the speed that holds along all strokes, m/s; unset where each has its own.
+std::optional<double> common_speed(const TimingOptions& options) {
+  return options.speed > 0 ? std::optional(options.speed) : std::nullopt;
+}
+
 /// Returns speeds_of_run(). Throws InputError if the stroke has no speed at all.
 RunSpeeds required_speeds(const Problem& job, const StrokeRun& run, const PathProblem& problem,
-                          const JobTimingOptions& options) {
-  if (auto speeds = speeds_of_run(job, run, problem, options.speed)) return *std::move(speeds);
+                          const TimingOptions& options) {
+  if (auto speeds = speeds_of_run(job, run, problem, common_speed(options)))
+    return *std::move(speeds);
   throw InputError(job.source, "stroke '" + job.arm().strokes[run.stroke].name +
                                    "' has no speed: allowed are process_speed, a column feed of "
                                    "its path, limits.tool_speed, or one speed for all (--speed)");
@@ -34,7 +40,7 @@ RunSpeeds required_speeds(const Problem& job, const StrokeRun& run, const PathPr
 class JobTimer {
  public:
   JobTimer(const PreparedRobot& robot, const Problem& job, const std::vector<Part>& parts,
-           const JobTimingOptions& options, const Budget& budget)
+           const TimingOptions& options, const Budget& budget)
       : robot_(robot),
         chain_(robot.arm().chain),
         job_(job),
@@ -146,7 +152,7 @@ class JobTimer {
   const Chain& chain_;
   const Problem& job_;
   const std::vector<Part>& parts_;
-  const JobTimingOptions& options_;
+  const TimingOptions& options_;
   const Budget& budget_;
   JointRates rates_;
   ArmMotion motion_;
@@ -154,18 +160,22 @@ class JobTimer {
 
 }  // namespace
 
-void require_speeds(const Problem& job, const JobTimingOptions& options) {
+void require_speeds(const Problem& job, const TimingOptions& options) {
+  if (!(options.speed >= 0 && std::isfinite(options.speed)))
+    throw InvalidArgument("speed: allowed are numbers > 0, m/s, and 0 for those of the strokes");
+  if (!options.speeds.empty() || options.chord)
+    throw InvalidArgument("speeds, chord: are of one path: allowed for strokes is neither");
   for (std::size_t k = 0; k < job.arm().strokes.size(); ++k)
     static_cast<void>(required_speeds(job, {k, false}, problem_of_run(job, {k, false}), options));
-  if (!options.speed) return;
+  if (options.speed == 0) return;
   require_tool_speed(build_arm(*job.arm().model, job.arm().base_link, job.arm().tip_link,
                                job.arm().hold, job.arm().tool, job.arm().roll)
                          .chain,
-                     *options.speed, "speed");
+                     options.speed, "speed");
 }
 
 MotionTiming time_job(const PreparedRobot& robot, const Problem& job,
-                      const std::vector<Part>& parts, const JobTimingOptions& options,
+                      const std::vector<Part>& parts, const TimingOptions& options,
                       const Budget& budget) {
   const TraceSpan span("time job");
   validate(job);

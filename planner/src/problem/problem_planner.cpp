@@ -81,11 +81,7 @@ struct ProblemPlanner::OfStrokes : Impl {
     view = {};
     ProblemView* const kept = keeps_view ? &view : nullptr;
     if (!asked.timing) return plan_job(prepared, problem, options, kept);
-    JobTimingOptions timing;
-    if (asked.timing->speed > 0) timing.speed = asked.timing->speed;
-    timing.turn_speed = asked.timing->turn_speed;
-    timing.rate = asked.timing->rate;
-    return plan_job_motion(prepared, problem, options, timing, kept);
+    return plan_job_motion(prepared, problem, options, *asked.timing, kept);
   }
   [[nodiscard]] AnyAdvice advise(const Answer& answer, const PlanOptions& options) const override {
     return advise_job(prepared, problem, answer, options);

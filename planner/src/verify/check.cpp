@@ -887,6 +887,13 @@ void require_passed(const CheckResult& result) {
                          (more > 0 ? ", and " + std::to_string(more) + " more" : ""));
 }
 
+void require_passed(const AnswerCheck& result) {
+  if (result.passed) return;
+  if (result.failures.empty())
+    for (const CheckResult& run : result.runs) require_passed(run);
+  throw std::logic_error("the answer does not pass its own check: " + result.failures.at(0));
+}
+
 void check_answer(const World& world, const PreparedRobot& robot, const PathProblem& problem,
                   const std::vector<TrajectoryRow>& rows, const Budget& budget) {
   const TraceSpan span("check");

@@ -42,12 +42,12 @@ class WorkcellCheck {
         timed_(timed),
         query_(world, options.margins ? DistanceProofs::kOff : DistanceProofs::kOn) {}
 
-  WorkcellCheckResult run() {
+  AnswerCheck run() {
     for (std::size_t k = 0; k < 2; ++k)
-      result_.arms[k] =
+      result_.runs.push_back(
           timed_ != nullptr
               ? check_motion(prepared_.robot(k), prepared_.problem(k), (*timed_)[k], options_)
-              : check_trajectory(prepared_.robot(k), prepared_.problem(k), rows_[k], options_);
+              : check_trajectory(prepared_.robot(k), prepared_.problem(k), rows_[k], options_));
     if (timed_ != nullptr ? by_one_clock() : simultaneous()) {
       if (timed_ == nullptr) {
         examine_given();
@@ -55,7 +55,7 @@ class WorkcellCheck {
       }
       examine_both();
     }
-    result_.passed = result_.arms[0].passed && result_.arms[1].passed && result_.failure_count == 0;
+    result_.passed = result_.runs[0].passed && result_.runs[1].passed && result_.failure_count == 0;
     return std::move(result_);
   }
 
@@ -243,32 +243,26 @@ class WorkcellCheck {
   const CheckOptions& options_;
   const TwoMotions* timed_;
   InterArmWorld::Query query_;
-  WorkcellCheckResult result_;
+  AnswerCheck result_;
 };
 
 }  // namespace
 
-WorkcellCheckResult check_workcell(const PreparedWorkcell& prepared, const TwoTrajectories& rows,
-                                   const CheckOptions& options) {
+AnswerCheck check_workcell(const PreparedWorkcell& prepared, const TwoTrajectories& rows,
+                           const CheckOptions& options) {
   return WorkcellCheck(prepared, prepared.between(), rows, options).run();
 }
 
-WorkcellCheckResult check_workcell_motion(const PreparedWorkcell& prepared, const TwoMotions& rows,
-                                          const CheckOptions& options) {
+AnswerCheck check_workcell_motion(const PreparedWorkcell& prepared, const TwoMotions& rows,
+                                  const CheckOptions& options) {
   require_motion_defaults(prepared);
   const InterArmWorld world = prepared.between_samples(options.budget);
   return WorkcellCheck(prepared, world, rows_of(rows), options, &rows).run();
 }
 
-WorkcellCheckResult check_workcell(const Problem& cell, const TwoTrajectories& rows,
-                                   const CheckOptions& options) {
+AnswerCheck check_workcell(const Problem& cell, const TwoTrajectories& rows,
+                           const CheckOptions& options) {
   return check_workcell(PreparedWorkcell(cell, options.budget), rows, options);
-}
-
-void require_passed(const WorkcellCheckResult& result) {
-  for (const CheckResult& arm : result.arms) require_passed(arm);
-  if (!result.passed)
-    throw std::logic_error("an answer for two arms is invalid: " + result.failures.front());
 }
 
 }  // namespace swivel

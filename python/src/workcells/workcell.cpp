@@ -30,7 +30,7 @@ namespace swivel::python {
 namespace {
 
 struct WorkcellCheck {
-  WorkcellCheckResult result;
+  AnswerCheck result;
 };
 
 Workcell shared(swivel::Problem cell) {
@@ -396,7 +396,7 @@ void bind_check(py::module_& m) {
           "failures",
           [](const WorkcellCheck& c) {
             std::vector<std::string> all;
-            for (const CheckResult& arm : c.result.arms)
+            for (const CheckResult& arm : c.result.runs)
               all.insert(all.end(), arm.failures.begin(), arm.failures.end());
             all.insert(all.end(), c.result.failures.begin(), c.result.failures.end());
             return all;

@@ -180,7 +180,7 @@ void expect_spoilt_end_refused(const PreparedRobot& robot, const Problem& job, c
   std::vector<Part> parts = found.arm().parts;
   const auto part = std::find_if(parts.begin(), parts.end(), [](const Part& p) { return p.run; });
   part->rows.back().q[3] += 2e-9;
-  const JobCheckResult refused = check_job(robot, job, parts);
+  const AnswerCheck refused = check_job(robot, job, parts);
   ASSERT_FALSE(refused.passed) << what;
   ASSERT_NE(refused.failures.front().find("the path is closed"), std::string::npos)
       << what << ": " << refused.failures.front();
@@ -237,7 +237,7 @@ void expect_plain_job(const RingArm& arm, const Problem& job, bool any_order,
     counts.dearer += part->cost > rings[k].truth.cost + rounding;
     counts.lines += job.arm().strokes[k].approach != Vector3d::Zero();
   }
-  const JobCheckResult check = check_job(robot, job, found.arm().parts);
+  const AnswerCheck check = check_job(robot, job, found.arm().parts);
   ASSERT_TRUE(check.passed) << what << ": " << check.failures.front();
   expect_laps(robot.arm().chain, found, what);
   if (::testing::Test::HasFatalFailure()) return;

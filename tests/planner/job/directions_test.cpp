@@ -119,7 +119,7 @@ void expect_cheapest(const PreparedRobot& robot, const Problem& job, const std::
       part.run->reversed = (turned >> part.run->stroke & 1) != 0;
       runs[part.run->stroke].push_back(part);
     }
-    const JobCheckResult check = check_job(robot, job, other.arm().parts);
+    const AnswerCheck check = check_job(robot, job, other.arm().parts);
     ASSERT_TRUE(check.passed) << what << ": " << check.failures.front();
     ASSERT_GE(check.cost, found.bound_any - 1e-9) << what;
     ++met.checked;
@@ -130,7 +130,7 @@ void expect_cheapest(const PreparedRobot& robot, const Problem& job, const std::
     ++met.none;
     return;
   }
-  const JobCheckResult own = check_job(robot, job, found.arm().parts);
+  const AnswerCheck own = check_job(robot, job, found.arm().parts);
   ASSERT_TRUE(own.passed) << what << ": " << own.failures.front();
   for (const Part& part : found.arm().parts) met.turned += part.run && part.run->reversed;
   if (straight) {  // else costs depend on the ways around that were found
@@ -143,7 +143,7 @@ void expect_cheapest(const PreparedRobot& robot, const Problem& job, const std::
     std::vector<const Part*> taken;
     for (const auto& of : runs)
       taken.push_back(&of[static_cast<std::size_t>(random.below(static_cast<int>(of.size())))]);
-    const JobCheckResult check = check_job(robot, job, joined(job, taken));
+    const AnswerCheck check = check_job(robot, job, joined(job, taken));
     if (!check.passed) continue;
     ASSERT_GE(check.cost, found.bound_any - 1e-9) << what;
     ++met.checked;

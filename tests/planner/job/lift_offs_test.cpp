@@ -211,7 +211,7 @@ TEST(LiftOffs, LeastNumberAgainstAllCuts) {
     ASSERT_EQ(static_cast<int>(found.arm().lift_offs.size()) + 1, *least);
     EXPECT_TRUE(found.checked);
     const Problem executed = executed_problem(job, found);
-    const JobCheckResult check = check_job(robot, executed, found.arm().parts);
+    const AnswerCheck check = check_job(robot, executed, found.arm().parts);
     EXPECT_TRUE(check.passed);
     EXPECT_NEAR(check.cost, found.cost, 1e-6 * found.cost);
     for (const LiftOffAnswer& lift : found.arm().lift_offs) {

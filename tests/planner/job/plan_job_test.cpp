@@ -102,7 +102,7 @@ TEST(PlanJob, PassesItsCheckAndIsTheSameAtAnyThreadCount) {
     best += job.arm().order == StrokeOrder::kBest;
     ASSERT_LE(found.bound, found.cost) << what;
     ASSERT_LE(found.bound_any, found.bound) << what;
-    const JobCheckResult check = check_job(door.robot, job, found.arm().parts);
+    const AnswerCheck check = check_job(door.robot, job, found.arm().parts);
     ASSERT_TRUE(check.passed) << what << ": " << check.failures.front();
     ASSERT_NEAR(check.cost, found.cost, 1e-6) << what;
     for (const Part& part : found.arm().parts) detours += !part.run && part.rows.size() > 2;
@@ -224,7 +224,7 @@ TEST(PlanJob, JobsOfTheDataFolderBecomeMotions) {
     EXPECT_EQ(plan.timed()->arms.front().events.size(), 2 * job.arm().strokes.size());
     std::vector<StrokeRun> order;
     for (const RunAnswer& run : plan.arm().runs) order.push_back(run.run);
-    const JobCheckResult check =
+    const AnswerCheck check =
         check_job_motion(robot, job, order, plan.timed()->arms.front(), {.margins = false});
     EXPECT_TRUE(check.passed) << check.failures.front();
     EXPECT_LE(plan.cost, 1.05 * plan.bound_any);
@@ -275,7 +275,7 @@ TEST(PlanJob, TriesOrdersWhereTheRollCosts) {
   ASSERT_EQ(best.status, PlanStatus::kSolved);
   EXPECT_LE(best.cost, given.cost * (1 + 1e-12));
   const PreparedRobot robot(problem_of_run(job, {0, false}));
-  const JobCheckResult check = check_job(robot, job, best.arm().parts);
+  const AnswerCheck check = check_job(robot, job, best.arm().parts);
   ASSERT_TRUE(check.passed) << check.failures.front();
   EXPECT_NEAR(check.cost, best.cost, 1e-9);
 }
@@ -341,15 +341,14 @@ TEST(PlanJob, TakesEveryClassOfArm) {
       if (plan.status != PlanStatus::kSolved) continue;
       ++solved;
       const Problem completed = with_motion_defaults(job);
-      const JobCheckResult check =
-          check_job(robot, completed, plan.arm().parts, {.margins = false});
+      const AnswerCheck check = check_job(robot, completed, plan.arm().parts, {.margins = false});
       ASSERT_TRUE(check.passed) << name << " trial " << trial << ": " << check.failures.front();
       ASSERT_TRUE(plan.motion) << name;
       if (!plan.timed()) continue;
       ++timed;
       std::vector<StrokeRun> order;
       for (const RunAnswer& run : plan.arm().runs) order.push_back(run.run);
-      const JobCheckResult moved =
+      const AnswerCheck moved =
           check_job_motion(robot, job, order, plan.timed()->arms.front(), {.margins = false});
       ASSERT_TRUE(moved.passed) << name << " trial " << trial << ": " << moved.failures.front();
     }
@@ -464,8 +463,7 @@ TEST(JobMotion, KeepsRatesClearancesAndEvents) {
       if (HasFatalFailure()) return;
       std::vector<StrokeRun> order;
       for (const RunAnswer& run : plan.arm().runs) order.push_back(run.run);
-      const JobCheckResult check =
-          check_job_motion(of->robot, job, order, plan.timed()->arms.front());
+      const AnswerCheck check = check_job_motion(of->robot, job, order, plan.timed()->arms.front());
       ASSERT_TRUE(check.passed) << what << ": " << check.failures.front();
     }
   std::printf("%d motions\n", timed);
@@ -495,7 +493,7 @@ TEST(JobMotion, StrokesThatMeetAreTimed) {
   ASSERT_TRUE(timed.motion);
   const ArmMotion& motion = timed.motion->arms.front();
   EXPECT_EQ(std::count(motion.part.begin(), motion.part.end(), 1), 1);
-  const JobCheckResult check = check_job_motion(door.robot, job, {{0, false}, {1, false}}, motion);
+  const AnswerCheck check = check_job_motion(door.robot, job, {{0, false}, {1, false}}, motion);
   EXPECT_TRUE(check.passed) << check.failures.front();
 }
 
@@ -612,7 +610,7 @@ TEST(CheckJob, RefusesSpoiltAnswers) {
     const auto& [name, spoil] = ways[static_cast<std::size_t>(trial) % ways.size()];
     std::vector<Part> parts = found.arm().parts;
     spoil(parts, random);
-    const JobCheckResult check = check_job(door.robot, job, parts, {.margins = false});
+    const AnswerCheck check = check_job(door.robot, job, parts, {.margins = false});
     EXPECT_FALSE(check.passed) << "trial " << trial << ": " << name;
     refused += !check.passed;
   }
@@ -670,7 +668,7 @@ TEST(CheckJob, HoldsTheProcessAgainstTheStroke) {
   std::vector<std::vector<bool>> process;
   for (const Part& part : parts) process.push_back(process_of_rows(part, job));
   const auto failures = [&](const std::vector<std::vector<bool>>& said) {
-    JobCheckResult result;
+    AnswerCheck result;
     result.passed = true;
     check_process(job, parts, said, result);
     EXPECT_EQ(result.passed, result.failures.empty());

@@ -61,8 +61,7 @@ TEST(ProcessRange, BeginsAtTheFirstWaypointWhereTheApproachGoesOnIntoTheStroke) 
   ASSERT_EQ(events.size(), 2U);
   EXPECT_NEAR(events[0].s, 0.02, 1e-3);
   EXPECT_NEAR(events[1].s, 0.053, 1e-3);
-  const JobCheckResult check =
-      check_job_motion(robot, job, {{0, false}}, plan.timed()->arms.front());
+  const AnswerCheck check = check_job_motion(robot, job, {{0, false}}, plan.timed()->arms.front());
   EXPECT_TRUE(check.passed) << check.failures.front();
 }
 
@@ -110,8 +109,7 @@ struct SlowJob {
     job.arm().process_speed = 0.02;
     job.arm().approach_speed = 0.03;
   }
-  [[nodiscard]] JobCheckResult check(const ArmMotion& motion,
-                                     std::optional<double> speed = {}) const {
+  [[nodiscard]] AnswerCheck check(const ArmMotion& motion, std::optional<double> speed = {}) const {
     return check_job_motion(robot, job, {{0, false}}, motion, {.margins = false, .speed = speed});
   }
   Problem job;
@@ -123,10 +121,10 @@ TEST(ToolSpeed, FasterThanTheJobAsksIsRefused) {
   const Answer plan = plan_job_motion(slow.robot, slow.job, {}, {});
   ASSERT_TRUE(plan.timed());
   ArmMotion motion = plan.timed()->arms.front();
-  const JobCheckResult as_asked = slow.check(motion);
+  const AnswerCheck as_asked = slow.check(motion);
   EXPECT_TRUE(as_asked.passed) << as_asked.failures.front();
   speed_up(motion, 1.05);
-  const JobCheckResult faster = slow.check(motion);
+  const AnswerCheck faster = slow.check(motion);
   ASSERT_FALSE(faster.passed);
   const auto names_speed = [](const std::string& line) {
     return line.find("stroke 'bead_0': rows ") == 0 &&

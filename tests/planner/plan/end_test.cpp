@@ -488,7 +488,7 @@ TEST(End, StrokesOfAJobEndThere) {
     }
     const Answer found = plan_job(robot, job);
     ASSERT_EQ(found.status, PlanStatus::kSolved) << name;
-    const JobCheckResult check = check_job(robot, job, found.arm().parts);
+    const AnswerCheck check = check_job(robot, job, found.arm().parts);
     ASSERT_TRUE(check.passed) << name << ": " << check.failures.front();
     const std::vector<Config> ends = ends_of(found, job.arm().strokes.size());
     for (std::size_t k = 0; k < ends.size(); k += 2)

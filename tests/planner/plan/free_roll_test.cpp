@@ -175,7 +175,7 @@ TEST(FreeRoll, CountsAxesAloneInStrokes) {
       costs.push_back(result.status == PlanStatus::kSolved ? result.cost : -1);
       if (result.status != PlanStatus::kSolved) continue;
       ++solved;
-      const JobCheckResult check = check_job(robot, job, result.arm().parts);
+      const AnswerCheck check = check_job(robot, job, result.arm().parts);
       ASSERT_TRUE(check.passed) << "trial " << trial << ' ' << kWays[way];
     }
     for (const double cost : costs) ASSERT_NEAR(cost, costs.front(), 1e-9) << "trial " << trial;

@@ -229,7 +229,7 @@ TEST(StepSegment, StrokesOfJobsHaveTheErrorsOfPaths) {
       ++tally.cases;
       if (found.status != PlanStatus::kSolved) continue;
       ++tally.solved;
-      const JobCheckResult check = check_job(prepared, job, found.arm().parts);
+      const AnswerCheck check = check_job(prepared, job, found.arm().parts);
       ASSERT_TRUE(check.passed) << what << ": " << check.failures.front();
       std::size_t run = 0;
       for (const Part& part : found.arm().parts) {
@@ -282,11 +282,11 @@ TEST(StepSegment, TwoArmsHaveTheErrorsOfPaths) {
       ++tally.cases;
       if (found.status != PlanStatus::kSolved) continue;
       ++tally.solved;
-      const WorkcellCheckResult check = check_workcell(prepared, rows_of_arms(found));
+      const AnswerCheck check = check_workcell(prepared, rows_of_arms(found));
       ASSERT_TRUE(check.passed) << what;
       for (std::size_t k = 0; k < 2; ++k)
         expect_errors_as_outside(prepared.robot(k), prepared.problem(k), found.arms[k].rows(),
-                                 found.arms[k].run(), check.arms[k], what, tally);
+                                 found.arms[k].run(), check.runs[k], what, tally);
       Problem other = cells[1 - noisy];
       for (ArmTask& arm : other.arms) loosen(arm.path());
       EXPECT_EQ(plan_workcell(PreparedWorkcell(other), with_errors()).status, PlanStatus::kSolved)

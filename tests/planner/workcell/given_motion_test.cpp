@@ -144,7 +144,7 @@ TEST(GivenMotion, CostsAsMuchAsAPlainProgramOverNodes) {
     ASSERT_EQ(found.arms[0].rows().size(), cell->arms[0].given.size());
     for (std::size_t row = 0; row < cell->arms[0].given.size(); ++row)
       EXPECT_EQ(found.arms[0].rows()[row].q, cell->arms[0].given[row]);
-    const WorkcellCheckResult check = check_workcell(prepared, rows_of_arms(found));
+    const AnswerCheck check = check_workcell(prepared, rows_of_arms(found));
     EXPECT_TRUE(check.passed) << (check.failures.empty() ? "" : check.failures.front());
     if (found.pair.decided_by != PairSearch::kArmsAlone) continue;
     const PlanResult own = Planner(prepared.problem(1)).plan(lazily());
@@ -227,7 +227,7 @@ TEST(GivenMotion, CheckRefusesOtherRows) {
     ++spoilt;
     std::array<std::vector<TrajectoryRow>, 2> rows = rows_of_arms(found);
     rows[0][1].q[6] += 1e-7;
-    const WorkcellCheckResult check = check_workcell(prepared, rows, {.margins = false});
+    const AnswerCheck check = check_workcell(prepared, rows, {.margins = false});
     EXPECT_FALSE(check.passed);
     ASSERT_FALSE(check.failures.empty());
     EXPECT_NE(check.failures[0].find("row 1: a joint of 'left' is 1e-07 rad from the given motion"),
@@ -348,7 +348,7 @@ TEST(GivenMotion, CarriesItsFollowerOnTheToolAsSixJointsHaveTurnedIt) {
     EXPECT_LE(off, 2e-6);
     EXPECT_LE(turned, 2e-6);
     const std::array<std::vector<TrajectoryRow>, 2> rows = rows_of_arms(found);
-    const WorkcellCheckResult check = check_workcell(prepared, rows);
+    const AnswerCheck check = check_workcell(prepared, rows);
     EXPECT_TRUE(check.passed) << (check.failures.empty() ? "" : check.failures.front());
     // What the file says of the roll does not matter: the joints say where the tool is.
     Problem without = *cell;
@@ -365,7 +365,7 @@ TEST(GivenMotion, CarriesItsFollowerOnTheToolAsSixJointsHaveTurnedIt) {
     // A follower that is off it is found.
     std::array<std::vector<TrajectoryRow>, 2> spoilt = rows;
     spoilt[1].back().q[kDof - 1] += 1e-4;
-    const WorkcellCheckResult refused = check_workcell(prepared, spoilt);
+    const AnswerCheck refused = check_workcell(prepared, spoilt);
     EXPECT_FALSE(refused.passed);
     EXPECT_TRUE(std::any_of(refused.failures.begin(), refused.failures.end(), [](const auto& line) {
       return line.find("off its path on the tool of 'left'") != std::string::npos;

@@ -291,10 +291,10 @@ TEST(Motion, KeepsEveryLimitOfBothArms) {
     stops += static_cast<int>(motion.arms[0].stops.size());
     EXPECT_GE(motion.duration, motion.ideal * (1 - 1e-6));
     Measurement(timed.cell, *timed.prepared, motion, timed.speed, worst).run();
-    const WorkcellCheckResult check =
+    const AnswerCheck check =
         check_workcell_motion(*timed.prepared, rows_of(motion), {.margins = false});
     EXPECT_TRUE(check.passed) << (check.failures.empty() ? "" : check.failures.front());
-    for (const CheckResult& arm : check.arms)
+    for (const CheckResult& arm : check.runs)
       EXPECT_TRUE(arm.passed) << (arm.failures.empty() ? "" : arm.failures.front());
   }
   int all = 0;
@@ -451,11 +451,11 @@ TEST(RefineWorkcell, IsCheaperAndValid) {
     EXPECT_NEAR(refined.cost_before, found.cost, 1e-9 * found.cost);
     EXPECT_LE(refined.cost, refined.cost_before);
     EXPECT_LE(refined.turns, 4);
-    const WorkcellCheckResult check =
+    const AnswerCheck check =
         check_workcell(*prepared, {refined.arms[0].rows, refined.arms[1].rows}, {.margins = false});
     EXPECT_TRUE(check.passed) << (check.failures.empty() ? "" : check.failures.front());
     double cost = 0;
-    for (const CheckResult& arm : check.arms) {
+    for (const CheckResult& arm : check.runs) {
       EXPECT_TRUE(arm.passed) << (arm.failures.empty() ? "" : arm.failures.front());
       cost += arm.cost;
     }
@@ -518,7 +518,7 @@ TEST(RefineWorkcell, IsPlannedTimedAndProvedInOneCall) {
       ASSERT_EQ(arm.rows().size(), rows.size());
       for (std::size_t row = 0; row < rows.size(); ++row) EXPECT_EQ(arm.rows()[row].q, rows[row].q);
     }
-    const WorkcellCheckResult check = check_workcell(*prepared, rows_of_arms(plan));
+    const AnswerCheck check = check_workcell(*prepared, rows_of_arms(plan));
     EXPECT_TRUE(check.passed);
     ASSERT_EQ(plan.pair.nearest.has_value(), check.between.has_value());
     if (check.between) {
@@ -570,7 +570,7 @@ TEST(RefineWorkcell, RefinesAndTimesRowsOfOtherPlans) {
     too_near += found->timing.failure && found->timing.failure->too_near;
     if (!found->timing.motion) continue;
     ++timed;
-    const WorkcellCheckResult check =
+    const AnswerCheck check =
         check_workcell_motion(*prepared, rows_of(*found->timing.motion), {.margins = false});
     EXPECT_TRUE(check.passed) << (check.failures.empty() ? "" : check.failures.front());
   }

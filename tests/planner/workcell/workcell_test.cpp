@@ -176,7 +176,7 @@ TEST(Workcell, CostsAsMuchAsAPlainProgramOverPairs) {
       EXPECT_NEAR(found.cost, cost, 1e-9);
       EXPECT_LE(least, found.cost + 1e-9);
     }
-    const WorkcellCheckResult check = check_workcell(prepared, rows_of_arms(found));
+    const AnswerCheck check = check_workcell(prepared, rows_of_arms(found));
     EXPECT_TRUE(check.passed) << (check.failures.empty() ? "" : check.failures.front());
   }
   std::printf("%d workcells: %d solved, %d of them of inexact arms, %d none, %d with a conflict\n",
@@ -358,8 +358,8 @@ TEST(Workcell, CheckRefusesSpoiltAnswers) {
     std::array<std::vector<TrajectoryRow>, 2> alone;
     for (std::size_t k = 0; k < 2; ++k)
       alone[k] = Planner(prepared.problem(k)).plan(lazily()).trajectory;
-    const WorkcellCheckResult check = check_workcell(prepared, alone);
-    EXPECT_TRUE(check.arms[0].passed && check.arms[1].passed);
+    const AnswerCheck check = check_workcell(prepared, alone);
+    EXPECT_TRUE(check.runs[0].passed && check.runs[1].passed);
     EXPECT_FALSE(check.passed);
     ++met;
   }

@@ -7,6 +7,7 @@
 #include "swivel/io/meshes/mesh.hpp"
 #include "swivel/io/motions/trajectory.hpp"
 #include "swivel/io/problems/problem.hpp"
+#include "swivel/io/results/given_answer.hpp"
 #include "swivel/io/results/result.hpp"
 #include "swivel/io/robots/robot.hpp"
 #include "swivel/io/tables/campaign.hpp"

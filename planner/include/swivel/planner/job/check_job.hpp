@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <cstdint>
-#include <string>
 #include <vector>
 
 #include "swivel/core/answer/answer.hpp"
@@ -11,15 +9,6 @@
 namespace swivel {
 
 struct ArmMotion;
-
-/// The result of an independent check of a planned job.
-struct JobCheckResult {
-  bool passed = false;
-  std::vector<std::string> failures;  ///< one line each, with the part; at most 20
-  std::int64_t failure_count = 0;     ///< number of all failures
-  double cost = 0;                    ///< of all moves, by the job's metric
-  std::vector<CheckResult> runs;      ///< of the parts that are runs, in their order
-};
 
 /// Proves a job from its problem alone, or tells what is wrong with it:
 /// - every stroke is run once, in the order of the job unless that may be chosen, and from the last
@@ -32,9 +21,9 @@ struct JobCheckResult {
 ///   less joint_margin (1e-9 rad) and nothing comes nearer than the clearance of motions, by FCL.
 /// Throws InvalidArgument for what validate(Problem) refuses and unless the robot was prepared for
 /// the job, InputError as plan_job() does, and Stopped.
-[[nodiscard]] JobCheckResult check_job(const PreparedRobot& robot, const Problem& job,
-                                       const std::vector<Part>& parts,
-                                       const CheckOptions& options = {});
+[[nodiscard]] AnswerCheck check_job(const PreparedRobot& robot, const Problem& job,
+                                    const std::vector<Part>& parts,
+                                    const CheckOptions& options = {});
 
 /// Proves a timed job from its problem alone, or tells what is wrong with it: as check_job() says
 /// of parts, with runs judged as check_motion() judges them; the rates of transitions as
@@ -42,10 +31,10 @@ struct JobCheckResult {
 /// sample the tool is no faster (0.1 %) than the fastest of the speeds that are asked for there, as
 /// time_job() takes them from the job; and that events are at the first samples at or after the
 /// begin and the end of each stroke. Throws as check_job() does.
-[[nodiscard]] JobCheckResult check_job_motion(const PreparedRobot& robot, const Problem& job,
-                                              const std::vector<StrokeRun>& order,
-                                              const ArmMotion& motion,
-                                              const CheckOptions& options = {});
+[[nodiscard]] AnswerCheck check_job_motion(const PreparedRobot& robot, const Problem& job,
+                                           const std::vector<StrokeRun>& order,
+                                           const ArmMotion& motion,
+                                           const CheckOptions& options = {});
 
 /// Adds a failure to `result` for each run among the parts of a job of which `process`, by part and
 /// row, is not what process_of_rows() returns: by its first such row. `process` may be empty for a
@@ -53,11 +42,7 @@ struct JobCheckResult {
 /// does not have. Throws InvalidArgument unless it has an item for each part and, where not empty,
 /// one for each row of a run.
 void check_process(const Problem& job, const std::vector<Part>& parts,
-                   const std::vector<std::vector<bool>>& process, JobCheckResult& result);
-
-/// Throws std::logic_error, with the first failure, if the result has not passed. For a program's
-/// own answers, which must never fail.
-void require_passed(const JobCheckResult& result);
+                   const std::vector<std::vector<bool>>& process, AnswerCheck& result);
 
 /// Returns true if the tool begins at rows.front() nearer to the stroke's last waypoint than to its
 /// first, by position and then by angle.

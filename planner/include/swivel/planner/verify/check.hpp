@@ -63,6 +63,19 @@ struct CheckResult {
   std::int64_t rows_examined = 0, moves_examined = 0, fcl_calls = 0;
 };
 
+/// The result of an independent check of an answer with several parts or arms.
+struct AnswerCheck {
+  bool passed = false;
+  /// Of strokes: one line for each failure, with its part. Of two arms: one for each failure of
+  /// both together; those of one arm are in `runs`. At most 20.
+  std::vector<std::string> failures;
+  std::int64_t failure_count = 0;  ///< number of all failures of which `failures` has the first
+  double cost = 0;                 ///< of all moves, by the problem's metric; not of two arms
+  /// Of each part that is a run of a stroke, in their order; of two arms that of each arm.
+  std::vector<CheckResult> runs;
+  std::optional<LeastMargin> between;  ///< of bodies of two arms at rows; with margins only
+};
+
 /// Options of check_trajectory() and check_motion().
 struct CheckOptions {
   /// true: compute worst errors and least clearances, and ask FCL alone. false: reach the verdict
@@ -72,7 +85,7 @@ struct CheckOptions {
   bool margins = true;
   Budget budget = {};  ///< Stopped is thrown once it is spent
   /// Speed of the tool along all strokes, m/s, that check_job_motion() asks for instead of those of
-  /// the job, like JobTimingOptions::speed. Other checks do not read it.
+  /// the job, like TimingOptions::speed of time_job(). Other checks do not read it.
   std::optional<double> speed = {};
 };
 
@@ -144,5 +157,6 @@ struct CheckOptions {
 /// Throws std::logic_error, with the first failure, if the result has not passed. For a program's
 /// own answers, which must never fail.
 void require_passed(const CheckResult& result);
+void require_passed(const AnswerCheck& result);
 
 }  // namespace swivel

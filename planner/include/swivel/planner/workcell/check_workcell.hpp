@@ -2,7 +2,6 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,15 +14,6 @@
 
 namespace swivel {
 
-/// The result of an independent check of two arms' trajectories.
-struct WorkcellCheckResult {
-  bool passed = false;
-  std::array<CheckResult, 2> arms;     ///< each arm by itself
-  std::vector<std::string> failures;   ///< of both arms together, one line each; at most 20
-  std::int64_t failure_count = 0;      ///< number of these
-  std::optional<LeastMargin> between;  ///< of bodies of both arms at rows; with margins only
-};
-
 /// Proves the trajectories of two arms from the workcell alone, or tells what is wrong with them.
 /// Each passes check_trajectory() by itself; rows are at the layers of the paths, as many as there
 /// are, so that row k of one arm and row k of the other are simultaneous; and at every row, and on
@@ -32,12 +22,12 @@ struct WorkcellCheckResult {
 /// never). At every row the tool of a follower is on its path on the leader's tool, where the
 /// leader's joints have that tool. Throws InvalidArgument and InputError as PreparedWorkcell does,
 /// and Stopped.
-[[nodiscard]] WorkcellCheckResult check_workcell(
-    const PreparedWorkcell& prepared, const std::array<std::vector<TrajectoryRow>, 2>& rows,
-    const CheckOptions& options = {});
-[[nodiscard]] WorkcellCheckResult check_workcell(
-    const Problem& cell, const std::array<std::vector<TrajectoryRow>, 2>& rows,
-    const CheckOptions& options = {});
+[[nodiscard]] AnswerCheck check_workcell(const PreparedWorkcell& prepared,
+                                         const std::array<std::vector<TrajectoryRow>, 2>& rows,
+                                         const CheckOptions& options = {});
+[[nodiscard]] AnswerCheck check_workcell(const Problem& cell,
+                                         const std::array<std::vector<TrajectoryRow>, 2>& rows,
+                                         const CheckOptions& options = {});
 /// Proves a timed motion of two arms from the workcell alone, or tells what is wrong with it. The
 /// workcell is one with_motion_defaults(). Each arm passes check_motion() by itself; rows are at
 /// the same times; at every row, and on every motion from one to the next in which both arms move
@@ -46,12 +36,9 @@ struct WorkcellCheckResult {
 /// the other is within its limits.tool_path_error (1 mm if that is not set) of its own. The tool of
 /// a follower is within tool_path_error and tool_angle_error (1 mm, 0.02 rad) of its path on the
 /// leader's tool at every row. Throws as check_workcell() does.
-[[nodiscard]] WorkcellCheckResult check_workcell_motion(
-    const PreparedWorkcell& prepared, const std::array<std::vector<TimedRow>, 2>& rows,
-    const CheckOptions& options = {});
-/// Throws std::logic_error, with the first failure, if the result has not passed.
-void require_passed(const WorkcellCheckResult& result);
-
+[[nodiscard]] AnswerCheck check_workcell_motion(const PreparedWorkcell& prepared,
+                                                const std::array<std::vector<TimedRow>, 2>& rows,
+                                                const CheckOptions& options = {});
 /// The verdict on a certificate that a workcell has no plan.
 struct WorkcellCertificateCheck {
   bool passed = false;
