@@ -16,14 +16,14 @@ namespace swivel {
 
 /// A part of what an arm does: a run of a stroke, or a transition between runs.
 struct Part {
-  /// The run; of a transition, none.
+  /// The run of a stroke that the part is; unset where the part is a transition.
   std::optional<StrokeRun> run;
   double cost = 0;  ///< of the rows
-  /// Of a run: at the layers of its problem (problem_of_run()). Of a transition: the joint
-  /// configurations between which the joints move straight, at least two; s, phi and branch mean
-  /// nothing.
+  /// The rows of a run are at the layers of its problem (problem_of_run()). Those of a transition,
+  /// at least two, are the joint configurations between which the joints move straight; their s,
+  /// phi and branch mean nothing.
   std::vector<TrajectoryRow> rows;
-  /// Of a transition with corners: two bodies that bar the straight move.
+  /// Two bodies that bar the straight move, where a transition goes around them by corners.
   std::optional<std::array<std::string, 2>> barred_by = {};
 };
 
@@ -71,12 +71,12 @@ struct ArmAnswer {
       false;  ///< its motion was given (ArmTask::given), and its rows are that, bit for bit
   /// Runs and transitions in the order in which they are executed; empty unless solved.
   std::vector<Part> parts;
-  /// Where time was up before an answer was proved: the parts of the cheapest one known. Where one
-  /// arm of two has no path by itself: valid rows from the first layer on. Maybe none.
+  /// The parts of the cheapest answer known, where time was up before one was proved; valid rows
+  /// from the first layer on, where one arm of two has no path by itself. Maybe none.
   std::vector<Part> partial;
   std::vector<RunAnswer> runs;  ///< in the order in which they are executed
-  /// Where the tool lifts off within strokes: with_lift_offs() makes of these the problem of which
-  /// `parts` and `runs` are.
+  /// The places where the tool lifts off within strokes: with_lift_offs() makes of these the
+  /// problem of which `parts` and `runs` are.
   std::vector<LiftOffAnswer> lift_offs;
   std::optional<NoTransition> no_transition;  ///< where there is no answer for want of a transition
   Counters counters;
@@ -99,7 +99,8 @@ struct ArmAnswer {
   [[nodiscard]] RunAnswer& run() { return runs.front(); }
 };
 
-/// Where two arms bar each other: a layer, or the motion from it to the next, and two bodies.
+/// A place where two arms bar each other: a layer, or the motion from it to the next, and two
+/// bodies.
 struct ArmConflict {
   int layer = 0;
   bool of_motion = false;
@@ -122,8 +123,8 @@ struct PairCounters {
 /// What was found about two arms together.
 struct PairAnswer {
   PairSearch decided_by = PairSearch::kNone;
-  /// Where each arm has a path by itself and both together have none: the first conflict that was
-  /// met.
+  /// The first conflict that was met, where each arm has a path by itself and both together have
+  /// none.
   std::optional<ArmConflict> conflict;
   /// The row of the trajectories and the bodies of both arms with the least margin. None where no
   /// pair is near, and unless measured.

@@ -28,7 +28,8 @@ struct ArmMotion : TimedPath {
   /// other rows of transitions have none. Empty where there is one part.
   std::vector<std::size_t> part;
   std::vector<ProcessEvent> events;  ///< in the order of their times
-  /// Of each run, in the order of parts: its motion without rows. Empty where there is one part.
+  /// The motion of each run, without its rows, in the order of parts. Empty where there is one
+  /// part.
   std::vector<TimedPath> runs;
 };
 
@@ -39,8 +40,8 @@ struct Motion {
   std::vector<ArmMotion> arms;
   double rate = 0;      ///< samples a second
   double duration = 0;  ///< time until all tools rest at the end, s
-  double ideal = 0;     ///< of two arms: time with the faster tool at the speed asked for, s
-  /// Of two arms: waypoints that are passed without a stop though the ratio of the tools' speeds
+  double ideal = 0;     ///< time of two arms with the faster tool at the speed asked for, s
+  /// Number of waypoints that two arms pass without a stop though the ratio of the tools' speeds
   /// changes there.
   int blended = 0;
   /// Number of the arm whose path the other one's tool carries, if there is one, and the most by

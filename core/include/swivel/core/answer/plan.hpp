@@ -270,8 +270,8 @@ struct PlanResult : RunAnswer {
   std::vector<TrajectoryRow> trajectory;  ///< empty unless solved
   /// PlanOptions::check was given, and the trajectory and the motion made of it were verified.
   bool checked = false;
-  /// Where there is no path: valid rows from the first layer on, as far as they are known; maybe
-  /// none. Where time was up before a trajectory was proved: that trajectory.
+  /// Valid rows from the first layer on, as far as they are known, where there is no path; the
+  /// trajectory that was not proved, where time was up before. Maybe none.
   std::vector<TrajectoryRow> partial;
   std::array<std::string, kDof> joint_names;
   std::vector<HeldJoint> held;  ///< joints between base and tip that are not planned

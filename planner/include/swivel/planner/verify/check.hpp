@@ -66,12 +66,12 @@ struct CheckResult {
 /// The result of an independent check of an answer with several parts or arms.
 struct AnswerCheck {
   bool passed = false;
-  /// Of strokes: one line for each failure, with its part. Of two arms: one for each failure of
-  /// both together; those of one arm are in `runs`. At most 20.
+  /// One line for each failure of strokes, with its part, or of two arms together; failures of one
+  /// path and of one arm of two are in `runs`. At most 20.
   std::vector<std::string> failures;
   std::int64_t failure_count = 0;  ///< number of all failures of which `failures` has the first
-  double cost = 0;                 ///< of all moves, by the problem's metric; not of two arms
-  /// Of each part that is a run of a stroke, in their order; of two arms that of each arm.
+  double cost = 0;  ///< of all moves, by the problem's metric; 0 where there are two arms
+  /// The check of each part that is a run of a stroke, in their order, or of each of two arms.
   std::vector<CheckResult> runs;
   std::optional<LeastMargin> between;  ///< of bodies of two arms at rows; with margins only
 };
