@@ -21,6 +21,7 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/core/answer/answer.hpp
   swivel/core/answer/answer_text.hpp
   swivel/core/answer/cause.hpp
+  swivel/core/answer/given_answer.hpp
   swivel/core/answer/infeasibility_certificate.hpp
   swivel/core/answer/plan.hpp
   swivel/core/answer/refined.hpp
@@ -53,7 +54,10 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/planner/plan/plan_options.hpp
   swivel/planner/plan/plan_view.hpp
   swivel/planner/plan/planner.hpp
+  swivel/planner/problem/given_answer.hpp
+  swivel/planner/problem/prepared_problem.hpp
   swivel/planner/problem/problem_planner.hpp
+  swivel/planner/problem/time_answer.hpp
   swivel/planner/refine/cartesian_path.hpp
   swivel/planner/refine/motion.hpp
   swivel/planner/refine/refine.hpp
@@ -77,6 +81,7 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/io/motions/motion.hpp
   swivel/io/motions/trajectory.hpp
   swivel/io/problems/problem.hpp
+  swivel/io/results/given_answer.hpp
   swivel/io/results/result.hpp
   swivel/io/robots/robot.hpp
   swivel/io/tables/campaign.hpp
