@@ -88,6 +88,8 @@ def change_job(job, draw):
     for stroke in job.strokes:
         if draw.random() < 0.3:
             stroke.retract = draw.uniform(0, 0.05)
+        if stroke.closed:  # its approach and retract must be equal
+            stroke.approach = stroke.retract = draw.uniform(0, 0.05)
         if draw.random() < 0.3:
             stroke.process_speed = draw.uniform(0.01, 0.1)
         if draw.random() < 0.2:
