@@ -27,7 +27,7 @@ planner = None
 def prepare(setting):
     """A planner for this process, that has planned once."""
     global planner
-    problem = swivel.load_problem(PROBLEM)
+    problem = swivel.load(PROBLEM)
     problem.resolution.ds, problem.resolution.dphi = SETTINGS[setting]
     planner = swivel.Planner(problem)
     planner.plan(planner="lazy")

@@ -34,6 +34,8 @@ ALIASES = {
     "_Check": "Callable[[_Array], ArrayLike]",
     "_MotionCheck": "Callable[[_Array, _Array], ArrayLike]",
     "_Progress": "Callable[[str, int, int], Any]",
+    "_Rows": "Plan | Trajectory | Motion | JobPlan | Sequence[JobPart] | JobMotion | WorkcellPlan"
+             " | WorkcellMotion | Mapping[str, Trajectory] | Mapping[str, Motion] | _File",
     "_Criterion": 'Literal["clearance", "cost", "margin", "slide", "speed"]',
     # A coordinate of placements: a number, (from, to, step), or (from, to) for samples.
     "_Range": "float | tuple[float, float] | tuple[float, float, float]",
@@ -49,7 +51,7 @@ WORDS = {
     "List[float[6]]": ("ArrayLike", "list[float]"),
     "List[str[2]]": ("tuple[str, str]", "list[str]"),
 }
-# What neither says: signatures, bases, types of arguments, overloads that only raise, and members
+# What neither says: signatures, bases, types of arguments, and members
 # whose type is `... | Any`.
 SIGNATURES = {
     "TrajectoryRow.__getitem__": (
@@ -62,7 +64,6 @@ SIGNATURES = {
 }
 BASES = {"TrajectoryRow": ["tuple[float, ...]"]}
 ARGUMENTS = {"Placements.best by": "_Criterion | Sequence[_Criterion]"}
-REFUSALS = {"Planner.__init__(self, problem: Job) -> None"}
 MAYBE = set(
     """Plan.cost Plan.diagnosis Plan.refinement Plan.motion JobPlan.cost JobPlan.bound
     JobPlan.bound_any JobPlan.gap JobPlan.motion JobRun.least_cost JobRun.cost JobRun.diagnosis
@@ -190,8 +191,7 @@ class Stubs:
         for text in self.texts(function):
             node = self.signature(text)
             line = f"({ast.unparse(node.args)}) -> {node.returns.id}"
-            if not self.has(REFUSALS, self.where + line):
-                lines.append(f"def {name}{line}: ...")
+            lines.append(f"def {name}{line}: ...")
         before = ["@staticmethod"] * static + ["@overload"] * (len(lines) > 1)
         return [part for line in lines for part in [*before, line]]
 
@@ -251,7 +251,7 @@ class Stubs:
             lines += [*read(name, thing), ""]
         text, self.where = "\n".join(lines), "python/stubs.py"
         self.used |= {name for name in self.aliases if re.search(rf"\b{name}\b", text)}
-        tables = set().union(WORDS, SIGNATURES, BASES, ARGUMENTS, REFUSALS, MAYBE, ALIASES)
+        tables = set().union(WORDS, SIGNATURES, BASES, ARGUMENTS, MAYBE, ALIASES)
         for key in sorted(tables - self.used):
             self.refuse(f"nothing needs the entry {key}")
         aliases = [f"{k}: TypeAlias = {told}" for k, told in self.aliases.items() if k in self.used]

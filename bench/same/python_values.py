@@ -81,7 +81,7 @@ def check(value):
 
 def path(file):
     """The answer to a problem with one path."""
-    problem = swivel.load_problem(file)
+    problem = swivel.load(file)
     planner = swivel.Planner(problem)
     plan = planner.plan(planner="lazy", threads=1, speed=0.05, rate=25.0)
     found = {
@@ -110,7 +110,7 @@ def parts(values):
 
 def job(file):
     """The answer to a job."""
-    plan = swivel.plan_job(file, planner="lazy", threads=1, speed=0.05, rate=25.0)
+    plan = swivel.plan(file, planner="lazy", threads=1, speed=0.05, rate=25.0)
     names = (
         "status",
         "solved",
@@ -143,19 +143,19 @@ def job(file):
     found["lift_offs"] = [
         [lift.stroke, lift.end, lift.resumed, lift.reached] for lift in plan.lift_offs
     ]
-    found["saved"] = saved(swivel.load_job(file))
+    found["saved"] = saved(swivel.load(file))
     timed = plan.motion
     found["motion"] = motion(timed)
     if timed is not None and timed.executable:
         found["events"] = [[event.t, event.stroke, event.s, event.on] for event in timed.events]
     if plan.solved:
-        found["check"] = check(swivel.check_job(file, plan))
+        found["check"] = check(swivel.check(file, plan))
     return found
 
 
 def workcell(file):
     """The answer to a workcell."""
-    plan = swivel.plan_workcell(file, planner="lazy", threads=1, speed=0.05, rate=25.0)
+    plan = swivel.plan(file, planner="lazy", threads=1, speed=0.05, rate=25.0)
     names = (
         "status",
         "solved",
@@ -176,7 +176,7 @@ def workcell(file):
     found["diagnoses"] = {name: diagnosis(plan.diagnosis(name)) for name in plan.names}
     found["motions"] = {name: motion(value) for name, value in plan.motions.items()}
     if plan.solved:
-        found["check"] = check(swivel.check_workcell(file, plan))
+        found["check"] = check(swivel.check(file, plan))
     return found
 
 

@@ -13,7 +13,7 @@ import swivel
 data = Path(__file__).resolve().parents[2] / "data"
 
 # %% A Motoman SDA5F polishes a car door. `evidence` measures clearances as well.
-problem = swivel.load_problem(data / "problems" / "experiment_c.yaml")
+problem = swivel.load(data / "problems" / "experiment_c.yaml")
 print(problem)
 plan = swivel.plan(problem, evidence=True)
 print(plan)

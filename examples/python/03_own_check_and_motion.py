@@ -11,7 +11,7 @@ import numpy as np
 import swivel
 
 folder = Path(sys.argv[1] if len(sys.argv) > 1 else ".")
-problem = swivel.load_problem(
+problem = swivel.load(
     Path(__file__).resolve().parents[2] / "data" / "problems" / "experiment_c.yaml"
 )
 planner = swivel.Planner(problem)

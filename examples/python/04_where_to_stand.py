@@ -8,7 +8,7 @@ from pathlib import Path
 
 import swivel
 
-problem = swivel.load_problem(
+problem = swivel.load(
     Path(__file__).resolve().parents[2] / "data" / "problems" / "experiment_c.yaml"
 )
 problem.resolution = swivel.Resolution(ds=0.02, dphi=0.2)

@@ -19,6 +19,7 @@
 #include <typeinfo>
 
 #include "members.hpp"
+#include "problem.hpp"
 #include "results.hpp"
 #include "runs.hpp"
 #include "swivel/core/answer/advice.hpp"
@@ -72,6 +73,51 @@ void serialize(A& archive, PathProblem& x) {
   };
   static_assert(sizeof(Listed) == sizeof(PathProblem));
   archive(static_cast<Robot&>(x), static_cast<Task&>(x), x.source, x.scene, x.vary);
+}
+
+/// Lists the members of a Stroke and of its base, which no structured binding takes apart together.
+template <class A>
+void serialize(A& archive, Stroke& x) {
+  struct Listed : Task {
+    std::string name;
+    bool reversible;
+    Vector3d approach, retract;
+    std::optional<double> process_speed, approach_speed;
+    std::vector<double> feed;
+    std::optional<StrokePiece> piece;
+  };
+  static_assert(sizeof(Listed) == sizeof(Stroke));
+  archive(static_cast<Task&>(x), x.name, x.reversible, x.approach, x.retract, x.process_speed,
+          x.approach_speed, x.feed, x.piece);
+}
+/// Lists the members of an ArmTask and of its base.
+template <class A>
+void serialize(A& archive, ArmTask& x) {
+  struct Listed : Robot {
+    std::string name;
+    std::vector<Stroke> strokes;
+    std::vector<Config> given;
+    Limits transition_limits;
+    std::optional<Config> home;
+    StrokeOrder order;
+    std::optional<double> process_speed, approach_speed;
+    double rapid;
+    std::optional<LiftOffs> lift;
+  };
+  static_assert(sizeof(Listed) == sizeof(ArmTask));
+  archive(static_cast<Robot&>(x), x.name, x.strokes, x.given, x.transition_limits, x.home, x.order,
+          x.process_speed, x.approach_speed, x.rapid, x.lift);
+}
+/// Lists the members of a LiftOffAnswer and of its base, which no structured binding takes apart
+/// together.
+template <class A>
+void serialize(A& archive, LiftOffAnswer& x) {
+  struct Listed : LiftOff {
+    double reached;
+    Cause cause;
+  };
+  static_assert(sizeof(Listed) == sizeof(LiftOffAnswer));
+  archive(x.stroke, x.end, x.resumed, x.reached, x.cause);
 }
 
 /// Lists the members of a RunAnswer and of its base, which no structured binding takes apart
@@ -138,6 +184,28 @@ void serialize(A& archive, EpisodeRow& x) {
 namespace python {
 
 using swivel::serialize;  // of structs of this namespace as well
+
+/// Lists the members of a Problem and of its base, which no structured binding takes apart
+/// together.
+template <class A>
+void serialize(A& archive, Problem& x) {
+  struct Listed : PathProblem {
+    StrokeList strokes;
+    std::optional<Config> home;
+    StrokeOrder order;
+    Vector3d approach, retract;
+    std::optional<double> process_speed, approach_speed;
+    double rapid;
+    std::optional<LiftOffs> lift;
+    std::shared_ptr<const swivel::Problem> two;
+  };
+  static_assert(sizeof(Listed) == sizeof(Problem));
+  std::optional<std::vector<Stroke>> strokes;
+  if (x.strokes.list) strokes = x.strokes.all();
+  archive(static_cast<PathProblem&>(x), strokes, x.home, x.order, x.approach, x.retract,
+          x.process_speed, x.approach_speed, x.rapid, x.lift, x.two);
+  if (A::is_loading::value && strokes) x.strokes.set(*strokes);
+}
 
 /// Leaves out the problem, which would be most of a plan.
 template <class A>

@@ -216,7 +216,7 @@ AnswerCheck check_timed(const PreparedRobot& robot, const swivel::Problem& job,
 }
 
 using Checked = std::variant<JobPlan, JobMotion, Parts, std::filesystem::path>;
-JobCheck check(const JobOrFile& of, const Checked& rows, std::optional<double> speed) {
+JobCheck check(const ProblemOrFile& of, const Checked& rows, std::optional<double> speed) {
   const swivel::Problem job = to_core(of);
   if (speed && !(std::isfinite(*speed) && *speed > 0))
     throw py::value_error("speed: not a positive number: allowed are values above 0, or None");
@@ -243,7 +243,8 @@ JobCheck check(const JobOrFile& of, const Checked& rows, std::optional<double> s
   });
 }
 
-JobPlan plan(const JobOrFile& of, PlanOptions options, const std::optional<TimingOptions>& timing) {
+JobPlan plan(const ProblemOrFile& of, PlanOptions options,
+             const std::optional<TimingOptions>& timing) {
   const swivel::Problem job = to_core(of);
   JobPlan plan;
   plan.plan = std::make_shared<const Answer>(interruptible([&](const std::stop_token& stop) {
@@ -274,8 +275,7 @@ ProvedParts proved_parts(const PreparedRobot& robot, const swivel::Problem& of,
   std::string source;
   const auto require = [&](const AnswerCheck& check) {
     if (!check.passed)
-      throw InputError(source,
-                       check.failures.front() + ": allowed is a job that passes check_job()");
+      throw InputError(source, check.failures.front() + ": allowed is a job that passes check()");
   };
   std::variant<Parts, JobMotion> read;
   if (const auto* file = std::get_if<std::filesystem::path>(&rows)) {
@@ -302,7 +302,7 @@ ProvedParts proved_parts(const PreparedRobot& robot, const swivel::Problem& of,
   return proved;
 }
 
-JobMotion time(const JobOrFile& of, const Timeable& rows, const TimingOptions& timing,
+JobMotion time(const ProblemOrFile& of, const Timeable& rows, const TimingOptions& timing,
                std::optional<double> timeout) {
   if (timeout && !(*timeout > 0))
     throw py::value_error("timeout: not a positive number: allowed are values above 0, or None");
@@ -339,14 +339,10 @@ JobMotion time(const JobOrFile& of, const Timeable& rows, const TimingOptions& t
   });
 }
 
-const char* const kSpeeds =
-    "speed: m/s along all strokes, instead of the speeds and feeds of the job. turn_speed: rad/s, "
-    "of the tool. rate: samples a second.";
-
 void bind_plan_job(py::module_& m) {
   m.def(
-      "plan_job",
-      [](const JobOrFile& job, const OrName<PlannerKind>& planner, int threads,
+      "_plan_strokes",
+      [](const ProblemOrFile& job, const OrName<PlannerKind>& planner, int threads,
          std::optional<double> timeout, bool prove, bool evidence, const ProgressCallback& progress,
          std::optional<double> speed, std::optional<double> turn_speed,
          std::optional<double> rate) {
@@ -361,60 +357,29 @@ void bind_plan_job(py::module_& m) {
       py::arg("job").none(false), py::kw_only(), py::arg("planner") = "parallel",
       py::arg("threads") = 0, py::arg("timeout") = py::none(), py::arg("prove") = true,
       py::arg("evidence") = false, py::arg("progress") = py::none(), py::arg("speed") = py::none(),
-      py::arg("turn_speed") = py::none(), py::arg("rate") = py::none(),
-      (std::string("Plans a job: all strokes and the transitions between them. No job is a "
-                   "JobPlan, not an exception. Other threads of Python run meanwhile; Ctrl-C stops "
-                   "it.\n\n"
-                   "job: a Job, or the name of its file. planner: 'parallel' or 'lazy'. threads: 0 "
-                   "for all cores. timeout: s, for everything. prove: prove the answer before it "
-                   "is returned, as check_job() does. evidence: find all measures. "
-                   "progress(stage, done, of): now and then.\n"
-                   "speed, turn_speed, rate: with any of these the plan has a motion in time. ") +
-       kSpeeds + " Raises InputError, InvalidArgument, and what progress raised.")
-          .c_str());
+      py::arg("turn_speed") = py::none(), py::arg("rate") = py::none());
 }
 
 }  // namespace
 
 void bind_job_functions(py::module_& m) {
   bind_plan_job(m);
-  m.def("check_job", &check, py::arg("job").none(false), py::arg("rows").none(false), py::kw_only(),
-        py::arg("speed") = py::none(),
-        "Proves the rows of a job from the job alone, or says what is wrong with them: JobCheck.\n"
-        "\n"
-        "job: a Job, or the name of its file. rows: a JobPlan (its parts), a JobMotion, a list of "
-        "JobParts, or the name of a file of a trajectory or a motion, of any format. speed: m/s "
-        "along "
-        "all strokes, instead of the speeds and feeds of the job, where a motion was made with it. "
-        "Raises InputError and InvalidArgument.");
+  m.def("_check_strokes", &check, py::arg("job"), py::arg("rows").none(false), py::kw_only(),
+        py::arg("speed"));
   m.def(
-      "time_job",
-      [](const JobOrFile& job, const Timeable& rows, std::optional<double> speed,
+      "_time_strokes",
+      [](const ProblemOrFile& job, const Timeable& rows, std::optional<double> speed,
          std::optional<double> turn_speed, double rate, std::optional<double> timeout) {
         return time(job, rows, timing_of(speed, turn_speed, rate), timeout);
       },
-      py::arg("job").none(false), py::arg("rows").none(false), py::kw_only(),
-      py::arg("speed") = py::none(), py::arg("turn_speed") = py::none(),
-      py::arg("rate") = TimingOptions().rate, py::arg("timeout") = py::none(),
-      (std::string("Makes the rows of a job a motion in time, and proves it: JobMotion. plan_job() "
-                   "with a speed or a rate plans rows that are sure to keep what motions keep.\n\n"
-                   "job: a Job, or the name of its file. rows: a JobPlan, a list of JobParts, or "
-                   "the name of a file of a trajectory or a motion, whose times are left aside. ") +
-       kSpeeds + " Raises InputError, InvalidArgument and TimeoutError.")
-          .c_str());
-  m.def(
-      "load_job_trajectory",
-      [](const std::filesystem::path& file, const JobOrFile& of) {
-        const swivel::Problem job = to_core(of);
-        return interruptible([&](const std::stop_token& stop) {
-          return load_rows(prepared(job, stop), job, file, Budget({}, nullptr, stop));
-        });
-      },
-      py::arg("file"), py::arg("job").none(false),
-      "The trajectory of a job as a list of JobParts, or a JobMotion where the file has times: any "
-      "file that the program, JobPlan.save() and JobMotion.save() write, and CSV of other "
-      "programs; "
-      "what the file does not state is worked out. Raises InputError.");
+      py::arg("job"), py::arg("rows").none(false), py::kw_only(), py::arg("speed"),
+      py::arg("turn_speed"), py::arg("rate"), py::arg("timeout"));
+  m.def("_load_parts", [](const std::filesystem::path& file, const ProblemOrFile& of) {
+    const swivel::Problem job = to_core(of);
+    return interruptible([&](const std::stop_token& stop) {
+      return load_rows(prepared(job, stop), job, file, Budget({}, nullptr, stop));
+    });
+  });
 }
 
 }  // namespace swivel::python

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "job.hpp"
+#include "problem.hpp"
 #include "results.hpp"
 #include "swivel/core/answer/answer.hpp"
 #include "swivel/core/answer/motion.hpp"
@@ -74,6 +74,8 @@ struct JobCheck {
     const swivel::Problem& job);
 [[nodiscard]] std::vector<JobPart> parts_of(const JobPlan& plan,
                                             const std::vector<swivel::Part>& of);
+void bind_job_results(py::module_& m);
+void bind_job_functions(py::module_& m);
 /// Returns the motion of a plan. Throws ValueError if it has none.
 [[nodiscard]] JobMotion motion_of(const JobPlan& plan);
 

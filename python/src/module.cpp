@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bindings.hpp"
 #include "interruptible.hpp"
-#include "job.hpp"
+#include "job_results.hpp"
+#include "problem.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 
@@ -16,7 +17,8 @@ PYBIND11_MODULE(_swivel, m) {
       "allowed.";
   // Signatures can name only types that are bound before them.
   swivel::python::bind_problem(m);
-  swivel::python::bind_job(m);
+  swivel::python::bind_strokes(m);
+  swivel::python::bind_whole_problem(m);
   swivel::python::bind_results(m);
   swivel::python::bind_states(m);
   swivel::python::bind_planner(m);

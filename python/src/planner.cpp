@@ -8,8 +8,8 @@
 
 #include "bindings.hpp"
 #include "interruptible.hpp"
-#include "job.hpp"
 #include "plan_keywords.hpp"
+#include "problem.hpp"
 #include "results.hpp"
 #include "states.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
@@ -386,15 +386,10 @@ void bind_planner(py::module_& m) {
                             "change between plans, and re-uses what did\n"
                             "not change; answers never depend on the plans before. For one thread "
                             "at a time: others take a clone().")
-      .def(py::init([](const PathProblem& problem) {
-             return std::make_unique<SharedPlanner>(Planner(problem));
+      .def(py::init([](const Problem& problem) {
+             return std::make_unique<SharedPlanner>(Planner(path_of(problem, "Planner")));
            }),
-           py::arg("problem"), "Raises InvalidArgument and InputError.")
-      .def(py::init([](const Job&) -> std::unique_ptr<SharedPlanner> {
-             // Without this, a Job would be taken for the Robot that it is as well.
-             throw py::type_error("Planner: a Job: allowed is a Problem; plan_job() plans jobs");
-           }),
-           py::arg("problem"), "Raises TypeError: plan_job() plans jobs.")
+           py::arg("problem"), "problem: of one path. Raises InvalidArgument and InputError.")
       .def(
           py::init(
               [](const Robot& robot, const std::optional<Task>& task, const SceneObjects& scene) {
@@ -402,8 +397,9 @@ void bind_planner(py::module_& m) {
               }),
           py::arg("robot"), py::arg("task") = py::none(), py::arg("scene") = py::tuple(),
           "scene: a Scene, or any sequence of SceneObjects. Raises InvalidArgument and InputError.")
-      .def_property_readonly("problem", &SharedPlanner::problem,
-                             "A copy of what it holds; change it with the methods below.")
+      .def_property_readonly(
+          "problem", [](SharedPlanner& self) { return Problem(self.problem()); },
+          "A copy of what it holds; change it with the methods below.")
       .def("clone", &SharedPlanner::clone,
            "A planner of the same problem that remembers no plan, for another thread.")
       .def(
@@ -540,7 +536,7 @@ void bind_planner(py::module_& m) {
       .def("__repr__", [](SharedPlanner& self) {
         if (self.in_use()) return std::string("<Planner, at work>");
         const PathProblem problem = self.problem();
-        return "<Planner of " + py::repr(py::cast(problem)).cast<std::string>() + ">";
+        return "<Planner of " + py::repr(py::cast(Problem(problem))).cast<std::string>() + ">";
       });
 }
 

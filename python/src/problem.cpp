@@ -1,917 +1,449 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bindings of robot, scene, task and problem.
+// Bindings of problems: one path, strokes, or two arms.
+#include "problem.hpp"
+
 #include <algorithm>
-#include <optional>
-#include <variant>
 
 #include "archive.hpp"
-#include "bindings.hpp"
 #include "interruptible.hpp"
 #include "runs.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
-#include "swivel/core/kinematics/closed_form/arm_class.hpp"
-#include "swivel/core/kinematics/srs/arm_guess.hpp"
 #include "swivel/core/messages/formatted.hpp"
-#include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/problem/validate.hpp"
 #include "swivel/core/study/campaign.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/plan/path_range.hpp"
-#include "swivel/planner/robot/planning_arm.hpp"
-#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel::python {
 
 namespace {
 
-using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
-using Packages = std::map<std::string, std::filesystem::path>;
-using Ranges = std::map<std::string, std::array<double, 2>>;  // by joint: lower and upper, rad or m
-using Scene = std::vector<SceneObject>;
+using Strokes = Typed<"Iterable[Stroke]", py::iterable>;
 
-Array to_array(py::handle source, const char* allowed) {
-  Array array = Array::ensure(source);
-  if (!array) {
-    PyErr_Clear();
-    throw py::value_error(std::string("not an array of numbers: allowed are ") + allowed);
+/// Sets what is shared to what all strokes have, else leaves it, and unsets it in each stroke that
+/// has just that.
+template <class Value>
+void share(std::vector<Stroke>& strokes, std::optional<Value> Stroke::*own, Value& shared) {
+  const bool same = std::all_of(strokes.begin(), strokes.end(), [&](const Stroke& stroke) {
+    return stroke.*own == strokes.front().*own;
+  });
+  if (same && !strokes.empty() && strokes.front().*own) shared = *(strokes.front().*own);
+  for (Stroke& stroke : strokes)
+    if (stroke.*own == shared) (stroke.*own).reset();
+}
+
+/// Returns true if two scenes have objects of the same names at the same places.
+bool same_places(const std::vector<SceneObject>& a, const std::vector<SceneObject>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const SceneObject& x, const SceneObject& y) {
+                      return x.name == y.name && x.pose.matrix() == y.pose.matrix();
+                    });
+}
+
+/// Gives an arm the rows of a motion; limits, resolution and cost are those of `like`. Throws
+/// ValueError for rows of other joints.
+void give(ArmTask& arm, const Robot& robot, const Trajectory& motion, const Task& like) {
+  static_cast<Robot&>(arm) = robot;
+  if (arm.roll) arm.roll = Roll{};  // the rows say how the tool stands turned
+  const auto names =
+      build_arm(*robot.model, robot.base_link, robot.tip_link, robot.hold, robot.tool, robot.roll)
+          .chain.joint_names;
+  if (!std::equal(names.begin(), names.end(), motion.joint_names.begin(), motion.joint_names.end()))
+    throw py::value_error("arms: the trajectory of '" + arm.name +
+                          "' has other joints than its robot: allowed are rows of this robot");
+  arm.path().limits = like.limits;
+  arm.path().resolution = like.resolution;
+  arm.path().cost = like.cost;
+  for (const TrajectoryRow& row : *motion.rows) arm.given.push_back(row.q);
+}
+
+/// Returns the steps between rows at which waypoints are. Throws ValueError unless they ascend
+/// from 0.
+std::vector<int> steps_of(const std::vector<int>& at_rows) {
+  std::vector<int> steps;
+  for (std::size_t k = 1; k < at_rows.size(); ++k) steps.push_back(at_rows[k] - at_rows[k - 1]);
+  if (at_rows.front() != 0 || std::any_of(steps.begin(), steps.end(), [](int n) { return n < 1; }))
+    throw py::value_error("at_rows: allowed are ascending rows from 0");
+  return steps;
+}
+
+std::string problem_words(const Problem& problem) {
+  if (problem.two) {
+    const std::vector<ArmTask>& arms = problem.two->arms;
+    const std::size_t of = problem.two->given_arm() == 0u ? 1 : 0;
+    return formatted("<Problem of '%s' and '%s', %zu waypoints>", arms[0].name.c_str(),
+                     arms[1].name.c_str(), arms[of].path().waypoints.size());
   }
-  return array;
+  const std::string robot = py::repr(py::cast(Robot(problem))).cast<std::string>();
+  return "<Problem" + (problem.source.empty() ? "" : " '" + problem.source + "'") + ": " +
+         robot.substr(7, robot.size() - 8) + "; " +
+         (problem.strokes.list ? std::to_string(problem.strokes.list->size()) + " strokes, "
+                               : std::to_string(problem.waypoints.size()) + " waypoints, ") +
+         std::to_string(problem.scene.size()) + " objects>";
 }
 
-std::string shape_text(const Array& array) {
-  return py::str(array.attr("shape")).cast<std::string>();
+/// Returns the problem of each arm by itself.
+std::vector<Problem> arms_of(const Problem& problem) {
+  if (!problem.two) return {problem};
+  std::vector<Problem> arms;
+  for (const ArmTask& arm : problem.two->arms)
+    arms.emplace_back(problem_of_path(*problem.two, arm, arm.path()));
+  return arms;
 }
 
-using PythonShape = std::variant<Sphere, Box, Cylinder, Capsule, Mesh>;
-
-Shape to_shape(const PythonShape& shape) {
-  return std::visit(
-      [](const auto& one) -> Shape {
-        if constexpr (std::is_same_v<std::decay_t<decltype(one)>, Mesh>)
-          return one.mesh;
-        else
-          return one;
-      },
-      shape);
-}
-PythonShape from_shape(const Shape& shape) {
-  return std::visit(
-      [](const auto& one) -> PythonShape {
-        if constexpr (std::is_same_v<std::decay_t<decltype(one)>, MeshPtr>)
-          return Mesh{one};
-        else
-          return one;
-      },
-      shape);
+void save(const Problem& problem, const std::filesystem::path& file) {
+  if (problem.two) throw InvalidArgument("save: a problem of two arms: allowed is one of one arm");
+  const swivel::Problem core = to_core(problem);
+  const PathProblem path = problem;
+  interruptible([&](const std::stop_token&) {
+    if (is_path(core))
+      io::save_problem(path, file);
+    else
+      io::save_problem(core, file);
+    return true;
+  });
 }
 
-Mesh mesh_of_arrays(const ArrayLike& vertices, const ArrayLike& triangles,
-                    const std::string& name) {
-  const Array points = to_array(vertices, "vertices of shape (n, 3), m");
-  const auto corners =
-      py::array_t<int, py::array::c_style | py::array::forcecast>::ensure(triangles);
-  if (!corners) throw py::error_already_set();
-  if (points.ndim() != 2 || points.shape(1) != 3 || corners.ndim() != 2 || corners.shape(1) != 3)
-    throw py::value_error(
-        "Mesh: vertices of shape " + shape_text(points) + " and triangles of shape " +
-        py::str(corners.attr("shape")).cast<std::string>() + ": allowed are (n, 3) and (m, 3)");
-  auto mesh = std::make_shared<TriangleMesh>();
-  mesh->source = name;
-  for (py::ssize_t k = 0; k < points.shape(0); ++k)
-    mesh->vertices.emplace_back(points.at(k, 0), points.at(k, 1), points.at(k, 2));
-  for (py::ssize_t k = 0; k < corners.shape(0); ++k) {
-    std::array<int, 3> triangle{corners.at(k, 0), corners.at(k, 1), corners.at(k, 2)};
-    for (const int corner : triangle)
-      if (corner < 0 || corner >= points.shape(0))
-        throw py::value_error("Mesh: triangle " + std::to_string(k) + " names vertex " +
-                              std::to_string(corner) + ": allowed are 0 to " +
-                              std::to_string(points.shape(0) - 1));
-    mesh->triangles.push_back(triangle);
-  }
-  mesh->closed = is_closed(*mesh);
-  return {std::move(mesh)};
-}
-
-Vector3d to_scale(py::handle scale) {
-  const Array values = to_array(scale, "a scale, or one for each axis");
-  if (values.size() == 1) return Vector3d::Constant(values.data()[0]);
-  if (values.size() != 3)
-    throw py::value_error("Mesh: scale of shape " + shape_text(values) +
-                          ": allowed are a number or 3");
-  return {values.data()[0], values.data()[1], values.data()[2]};
-}
-
-std::string shape_words(const Shape& shape) {
-  return py::repr(py::cast(from_shape(shape))).cast<std::string>();
-}
-
-std::string number(double value) {
-  return py::repr(py::float_(value)).cast<std::string>();
-}
-
-/// Returns axes whose z points along `axis`, of any length above 1e-6: those of the smallest turn
-/// from the frame's own, for an axis that points down from these turned by 180 deg about x, so that
-/// axes near straight up and straight down vary smoothly; or, with a tangent, those whose x is the
-/// part of the tangent perpendicular to z. Throws ValueError for vectors without a direction, and a
-/// tangent along the axis.
-Matrix3d axes_along(const Vector3d& axis, const std::optional<Vector3d>& tangent) {
-  if (!(axis.norm() > 1e-6) || !axis.allFinite())
-    throw py::value_error("pose: axis of length 0, or not finite: allowed is any other");
-  const Vector3d z = axis.normalized();
-  if (!tangent) {
-    const Vector3d from(1, z.z() < 0 ? -1 : 1, z.z() < 0 ? -1 : 1);  // diagonal of the frame before
-    const Vector3d up = Vector3d::UnitZ() * from.z();
-    return Quaterniond::FromTwoVectors(up, z).toRotationMatrix() * from.asDiagonal();
-  }
-  const Vector3d x = *tangent - tangent->dot(z) * z;
-  if (!(x.norm() > 1e-3 * tangent->norm()) || !(tangent->norm() > 1e-6) || !tangent->allFinite())
-    throw py::value_error("pose: tangent of length 0, or along the axis: allowed is any other");
-  Matrix3d axes;
-  axes << x.normalized(), z.cross(x.normalized()), z;
-  return axes;
-}
-
-/// Returns a pose from a position, m, and rpy, rad, a quaternion [w x y z], or the direction of its
-/// z axis.
-Pose make_pose(const Vector3d& xyz, const std::optional<Vector3d>& rpy,
-               const std::optional<Eigen::Vector4d>& quat, const std::optional<Vector3d>& axis,
-               const std::optional<Vector3d>& tangent) {
-  if (rpy.has_value() + quat.has_value() + axis.has_value() > 1)
-    throw py::value_error("pose: more than one of rpy, quat and axis: allowed is one of them");
-  if (tangent && !axis) throw py::value_error("pose: tangent: allowed is a tangent beside axis");
-  Pose pose = Pose::Identity();
-  if (axis) pose.linear() = axes_along(*axis, tangent);
-  pose.translation() = xyz;
-  if (rpy)
-    pose.linear() = (Eigen::AngleAxisd((*rpy)[2], Vector3d::UnitZ()) *
-                     Eigen::AngleAxisd((*rpy)[1], Vector3d::UnitY()) *
-                     Eigen::AngleAxisd((*rpy)[0], Vector3d::UnitX()))
-                        .toRotationMatrix();
-  if (quat) {
-    if (!(quat->norm() > 0) || !quat->allFinite())
-      throw py::value_error("pose: quat of length 0, or not finite: allowed is any other");
-    pose.linear() =
-        Quaterniond((*quat)[0], (*quat)[1], (*quat)[2], (*quat)[3]).normalized().toRotationMatrix();
-  }
-  return pose;
-}
-
-// --- robot
-
-void choose_links(Robot& robot, const std::optional<std::string>& base,
-                  const std::optional<std::string>& tip, bool roll) {
-  const RobotModel& model = *robot.model;
-  robot.base_link = base.value_or(model.links[static_cast<std::size_t>(model.root_link)].name);
-  if (tip) {
-    robot.tip_link = *tip;
-    return;
-  }
-  const std::vector<ArmGuess> arms = guess_arms(model).arms;
-  // Chooses an arm of six joints if the tool may turn, else one of seven. An arm of six without a
-  // roll is refused later with a message that says what to add.
-  const auto fits = [&](const ArmGuess& arm) { return (arm.joints == 6) == roll; };
-  const auto found = std::find_if(arms.begin(), arms.end(), fits);
-  if (arms.empty() || (roll && found == arms.end()))
-    throw InputError(model.source,
-                     std::string("no arm of ") + (roll ? "six" : "seven or six") +
-                         " joints in a row was found: allowed is one, or base and tip by name");
-  const ArmGuess& arm = found == arms.end() ? arms.front() : *found;
-  robot.tip_link = arm.tip;
-  if (!base) robot.base_link = arm.base;
-}
-
-struct RobotKeywords {
-  std::optional<std::string> base, tip;
-  std::optional<Pose> tool;
-  std::map<std::string, double> hold;
-  std::optional<Roll> roll;
-};
-io::RobotOptions robot_options(std::vector<std::string> without, bool soft_limits,
-                               const std::optional<std::filesystem::path>& joint_limits,
-                               const Ranges& limits) {
-  io::RobotOptions options{std::move(without), soft_limits, joint_limits.value_or("")};
-  for (const auto& [joint, range] : limits) options.limits[joint] = {range[0], range[1]};
-  return options;
-}
-
-Robot make_robot(std::shared_ptr<const RobotModel> model, const RobotKeywords& keywords) {
-  Robot robot;
-  robot.model = std::move(model);
-  choose_links(robot, keywords.base, keywords.tip, keywords.roll.has_value());
-  if (keywords.tool) robot.tool = *keywords.tool;
-  robot.hold = keywords.hold;
-  robot.roll = keywords.roll;
-  static_cast<void>(planning_arm(robot));  // throws for an unsuitable arm
-  return robot;
-}
-
-ArmModel arm_of(const Robot& robot) {
-  return build_arm(*robot.model, robot.base_link, robot.tip_link, robot.hold, robot.tool,
-                   robot.roll);
-}
-
-/// Returns the tool poses of joints, rad: (4, 4) for (7,), and (n, 4, 4) for (n, 7).
-py::array_t<double> tool_poses(const Robot& robot, const ArrayLike& joints) {
-  const py::array_t<double> states = to_joints(joints, "joints");
-  const Chain chain = arm_of(robot).chain;
-  const py::ssize_t count = states.shape(0);
-  py::array_t<double> poses({count, py::ssize_t{4}, py::ssize_t{4}});
-  for (py::ssize_t k = 0; k < count; ++k) {
-    const Pose pose = chain.tool(Config(Eigen::Map<const Config>(states.data(k, 0))));
-    Eigen::Map<Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(poses.mutable_data(k, 0, 0)) =
-        pose.matrix();
-  }
-  if (to_array(joints, "joints").ndim() == 1) return poses.attr("reshape")(4, 4);
-  return poses;
-}
-
-py::array_t<double> joint_limits(const Robot& robot) {
-  const Chain chain = arm_of(robot).chain;
-  py::array_t<double> limits({kDof, 2});
-  for (int j = 0; j < kDof; ++j) {
-    const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
-    const double infinity = std::numeric_limits<double>::infinity();
-    limits.mutable_at(j, 0) = limit.continuous ? -infinity : limit.lower;
-    limits.mutable_at(j, 1) = limit.continuous ? infinity : limit.upper;
-  }
-  return limits;
-}
-
-std::string robot_words(const Robot& robot) {
-  const PlanningArm arm = planning_arm(robot);
-  return "'" + robot.model->name + "', " + robot.base_link + " to " + robot.tip_link + ", " +
-         (robot.roll ? "six joints and the roll" : "seven joints") + ", " + arm.kind.method();
-}
-
-// --- scene
-
-std::size_t find_object(const Scene& scene, const std::string& name) {
-  const auto found = std::find_if(scene.begin(), scene.end(),
-                                  [&](const SceneObject& object) { return object.name == name; });
-  if (found != scene.end()) return static_cast<std::size_t>(found - scene.begin());
-  std::vector<std::string> known;
-  for (const SceneObject& object : scene) known.push_back(object.name);
-  throw py::key_error("no object '" + name + "'" +
-                      (known.empty() ? "" : ", nearest is '" + nearest_name(name, known) + "'"));
-}
-
-Scene to_scene(const SceneObjects& objects) {
-  Scene scene;
-  for (const py::handle object : objects) scene.push_back(object.cast<const SceneObject&>());
-  return scene;
-}
-
-void bind_shapes(py::module_& m) {
-  py::class_<Sphere>(m, "Sphere", "A ball about its frame's origin.")
-      .def(pickling<Sphere>())
-      .def(py::init([](double radius) { return Sphere{radius}; }), py::arg("radius"), "radius: m.")
-      .def_readonly("radius", &Sphere::radius, "m.")
-      .def("__repr__", [](const Sphere& s) { return "Sphere(" + number(s.radius) + ")"; });
-  py::class_<Box>(m, "Box", "A box centred on its frame.")
-      .def(pickling<Box>())
-      .def(py::init([](const Vector3d& size) { return Box{size}; }), py::arg("size"),
-           "size: full edge lengths along x, y, z, m.")
-      .def_readonly("size", &Box::size, "Full edge lengths, (3,), m.")
-      .def("__repr__", [](const Box& b) {
-        return "Box([" + number(b.size[0]) + ", " + number(b.size[1]) + ", " + number(b.size[2]) +
-               "])";
-      });
-  const auto round = [&](auto shape, const char* name, const char* doc, const char* length) {
-    using Round = decltype(shape);
-    py::class_<Round>(m, name, doc)
-        .def(pickling<Round>())
-        .def(py::init([](double radius, double along) {
-               return Round{radius, along};
-             }),
-             py::arg("radius"), py::arg("length"))
-        .def_readonly("radius", &Round::radius, "m.")
-        .def_readonly("length", &Round::length, length)
-        .def("__repr__", [type = std::string(name)](const Round& r) {
-          return type + "(" + number(r.radius) + ", " + number(r.length) + ")";
-        });
-  };
-  round(Cylinder{}, "Cylinder", "A cylinder along z, centred on its frame.", "m.");
-  round(Capsule{}, "Capsule", "A capsule along z, centred on its frame.",
-        "Of the part between the two caps, m.");
-  py::class_<Mesh>(m, "Mesh", "Triangles. A closed surface is a solid, an open one has no inside.")
-      .def(pickling<Mesh>())
-      .def(py::init([](const std::filesystem::path& file, const Typed<"float | ArrayLike">& scale) {
-             io::MeshCache cache;
-             return Mesh{io::load_mesh(file, to_scale(scale), cache)};
+void bind_constructors(py::class_<Problem, Robot, Task>& type) {
+  type.def(py::init([](const Robot& robot, const Task& task, const SceneObjects& scene) {
+             Problem problem;
+             static_cast<Robot&>(problem) = robot;
+             static_cast<Task&>(problem) = task;
+             for (const py::handle object : scene)
+               problem.scene.push_back(object.cast<const SceneObject&>());
+             pass_half_turns(problem, problem.waypoints);
+             return problem;
            }),
-           py::arg("file"), py::arg("scale") = 1.0,
-           "file: STL, OBJ, DAE or PLY. scale: a number, or one for each axis; a negative one "
-           "mirrors. Raises InputError.")
-      .def_static("from_arrays", &mesh_of_arrays, py::arg("vertices"), py::arg("triangles"),
-                  py::arg("name") = "mesh",
-                  "vertices: (n, 3), m. triangles: (m, 3) indices of vertices, counter-clockwise "
-                  "as seen from outside.")
-      .def_property_readonly(
-          "vertices",
-          [](const Mesh& mesh) {
-            const std::shared_ptr<const std::vector<Vector3d>> all(mesh.mesh, &mesh.mesh->vertices);
-            return column(
-                all, all->empty() ? static_cast<const double*>(nullptr) : all->front().data(), 3);
-          },
-          "(n, 3) float64, m; read-only.")
-      .def_property_readonly(
-          "closed", [](const Mesh& mesh) { return mesh.mesh->closed; }, "Whether it is a solid.")
-      .def("__repr__", [](const Mesh& mesh) {
-        return "<Mesh '" + mesh.mesh->source + "': " + std::to_string(mesh.mesh->triangles.size()) +
-               " triangles, " + (mesh.mesh->closed ? "closed>" : "open>");
-      });
-}
-
-void bind_robot(py::module_& m) {
-  PlainStruct<Roll>(m, "Roll",
-                    "How far the tool may stand turned about its own z axis, rad. A turn or more, "
-                    "the default, is a circle.")
-      .member("lower", &Roll::lower, "rad.")
-      .member("upper", &Roll::upper, "rad.")
-      .finish();
-
-  py::class_<AttachedBody>(
-      m, "AttachedBody",
-      "A tool or a part that the arm carries. It does not change; attach another.")
-      .def(pickling<AttachedBody>())
-      .def(py::init(
-               [](std::string name, const PythonShape& shape, std::string link, const Pose& pose) {
-                 return AttachedBody{std::move(name), to_shape(shape), pose, std::move(link)};
-               }),
-           py::arg("name"), py::arg("shape"), py::arg("link"),
-           py::arg("pose") = py::make_tuple(0, 0, 0), "pose: of the shape in the frame of `link`.")
-      .def_readonly("name", &AttachedBody::name)
-      .def_property_readonly("shape",
-                             [](const AttachedBody& body) { return from_shape(body.shape); })
-      .def_readonly("link", &AttachedBody::link)
-      .def_property_readonly(
-          "pose", [](const AttachedBody& body) { return body.pose; },
-          "(4, 4), in the frame of `link`.")
-      .def("__repr__", [](const AttachedBody& body) {
-        return "<AttachedBody '" + body.name + "' on " + body.link + ": " +
-               shape_words(body.shape) + ">";
-      });
-
-  const char* const keywords =
-      "base, tip: links that the arm reaches from and to; without them the first arm of seven "
-      "joints that is found,\n"
-      "with roll of six, as `swivel info` does. tool: pose of the tool in the tip link. hold: "
-      "positions of other joints by\n"
-      "name, rad or m. packages: name -> folder, for package:// names of meshes. roll: of arms of "
-      "six joints whose tool may turn "
-      "about its own z axis. without: links left out, with all that they carry. soft_limits: "
-      "whether joints keep the soft limits\n"
-      "of the URDF's <safety_controller>. joint_limits: MoveIt's joint_limits.yaml. limits: joint "
-      "-> "
-      "(lower, upper), rad or m, within the URDF's.\n"
-      "Raises InputError.";
-  py::class_<Robot> type(m, "Robot",
-                         "The arm that plans: a chain of a robot model, and what it carries.");
-  make_copyable(type);
-  type.def(pickling<Robot>());
-  type.def(py::init([](const std::filesystem::path& urdf,
-                       const std::optional<std::filesystem::path>& srdf,
-                       std::optional<std::string> base, std::optional<std::string> tip,
-                       const std::optional<Pose>& tool, std::map<std::string, double> hold,
-                       const Packages& packages, const std::optional<Roll>& roll,
-                       std::vector<std::string> without, bool soft_limits,
-                       const std::optional<std::filesystem::path>& joint_limits,
-                       const Ranges& limits) {
-             return make_robot(io::load_robot(urdf, srdf.value_or(""), packages,
-                                              robot_options(std::move(without), soft_limits,
-                                                            joint_limits, limits)),
-                               {std::move(base), std::move(tip), tool, std::move(hold), roll});
+           py::arg("robot"), py::arg("task"), py::arg("scene") = py::tuple(),
+           "One path. A tool that may turn freely about its z axis passes half turns between "
+           "waypoints: those behind a half turn about another axis are turned by 180 deg about z.");
+  type.def(py::init([](const Robot& robot, const Strokes& strokes, const SceneObjects& scene,
+                       const Limits& limits, const Resolution& resolution, const Cost& cost,
+                       const Refinement& refinement, const ArrayLike& home,
+                       const OrName<StrokeOrder>& order, const ArrayLike& approach,
+                       const ArrayLike& retract, std::optional<double> process_speed,
+                       std::optional<double> approach_speed, double rapid,
+                       const std::optional<LiftOffs>& lift) {
+             Problem problem;
+             static_cast<Robot&>(problem) = robot;
+             problem.strokes.list = py::list(strokes);
+             static_cast<void>(problem.strokes.all());
+             for (const py::handle object : scene)
+               problem.scene.push_back(object.cast<const SceneObject&>());
+             problem.limits = limits, problem.resolution = resolution, problem.cost = cost;
+             problem.refinement = refinement, problem.home = to_posture(home, "home");
+             problem.order = to_enum<StrokeOrder>(order);
+             problem.approach = to_offset(approach, "approach");
+             problem.retract = to_offset(retract, "retract");
+             problem.process_speed = process_speed, problem.approach_speed = approach_speed;
+             problem.rapid = rapid, problem.lift = lift;
+             return problem;
            }),
-           py::arg("urdf"), py::arg("srdf") = py::none(), py::kw_only(),
-           py::arg("base") = py::none(), py::arg("tip") = py::none(), py::arg("tool") = py::none(),
-           py::arg("hold") = std::map<std::string, double>{}, py::arg("packages") = Packages{},
-           py::arg("roll") = py::none(), py::arg("without") = std::vector<std::string>{},
-           py::arg("soft_limits") = true, py::arg("joint_limits") = py::none(),
-           py::arg("limits") = Ranges{}, keywords)
-      .def_static(
-          "from_string",
-          [](const std::string& urdf, const std::optional<std::string>& srdf,
-             std::optional<std::string> base, std::optional<std::string> tip,
-             const std::optional<Pose>& tool, std::map<std::string, double> hold,
-             const Packages& packages, const std::optional<Roll>& roll,
-             std::vector<std::string> without, bool soft_limits,
-             const std::optional<std::filesystem::path>& joint_limits, const Ranges& limits) {
-            return make_robot(io::parse_robot(urdf, srdf.value_or(""), packages,
-                                              robot_options(std::move(without), soft_limits,
-                                                            joint_limits, limits)),
-                              {std::move(base), std::move(tip), tool, std::move(hold), roll});
-          },
-          py::arg("urdf"), py::arg("srdf") = py::none(), py::kw_only(),
-          py::arg("base") = py::none(), py::arg("tip") = py::none(), py::arg("tool") = py::none(),
-          py::arg("hold") = std::map<std::string, double>{}, py::arg("packages") = Packages{},
-          py::arg("roll") = py::none(), py::arg("without") = std::vector<std::string>{},
-          py::arg("soft_limits") = true, py::arg("joint_limits") = py::none(),
-          py::arg("limits") = Ranges{},
-          (std::string("The same of the texts of a URDF and an SRDF, as ROS 2's robot_description "
-                       "has them.\n") +
-           keywords)
-              .c_str())
-      .def_property_readonly(
-          "name", [](const Robot& robot) { return robot.model->name; }, "Of the URDF.")
-      .def_readonly("base", &Robot::base_link, "Name of the base link: the frame of everything.")
-      .def_readonly("tip", &Robot::tip_link, "Name of the link that carries the tool.")
-      .def_property(
-          "tool", [](const Robot& robot) { return robot.tool; },
-          [](Robot& robot, const Pose& tool) { robot.tool = tool; },
-          "(4, 4): tool frame in the tip link.")
-      .def_readonly("hold", &Robot::hold,
-                    "Positions of joints that the arm leaves out, rad or m (a copy).")
-      .def_property_readonly(
-          "held",
-          [](const Robot& robot) {
-            std::map<std::string, double> held;
-            for (const HeldJoint& joint : arm_of(robot).held) held[joint.name] = joint.position;
-            return held;
-          },
-          "Joints between base and tip that are not planned -> where they stand, rad or m: where "
-          "`hold` says, else at 0 or at the "
-          "limit nearest to it.")
-      .def_readonly("roll", &Robot::roll, "None where the tool stands as the waypoints have it.")
-      .def_property_readonly(
-          "links",
-          [](const Robot& robot) {
-            std::vector<std::string> names;
-            for (const Link& link : robot.model->links) names.push_back(link.name);
-            return names;
-          },
-          "Names of all links.")
-      .def_property_readonly(
-          "attached", [](const Robot& robot) { return robot.attached; },
-          "What it carries (a copy).")
-      .def(
-          "attach",
-          [](Robot& robot, AttachedBody body) { robot.attached.push_back(std::move(body)); },
-          py::arg("body"))
-      .def(
-          "detach",
-          [](Robot& robot, const std::string& name) {
-            if (std::erase_if(robot.attached,
-                              [&](const AttachedBody& body) { return body.name == name; }) == 0)
-              throw py::key_error("no attached body '" + name + "'");
-          },
-          py::arg("name"))
-      .def_property_readonly(
-          "joint_names", [](const Robot& robot) { return arm_of(robot).chain.joint_names; },
-          "Seven, base to tip; with `roll` the last one is the roll.")
-      .def_property_readonly("joint_limits", &joint_limits,
-                             "(7, 2): lower and upper, rad; infinite for continuous joints.")
-      .def_property_readonly(
-          "method", [](const Robot& robot) { return planning_arm(robot).kind.method(); },
-          "How solutions of a pose are found, in a line.")
-      .def("tool_pose", &tool_poses, py::arg("joints"),
-           "Pose of the tool in the base frame. joints: (7,) or (n, 7), rad. Returns (4, 4) or (n, "
-           "4, 4).")
-      .def("__repr__", [](const Robot& robot) { return "<Robot " + robot_words(robot) + ">"; });
-}
-
-/// Names of bodies that may touch, or a dict from name to the depth to which each may, m.
-using AllowedBodies =
-    std::variant<std::vector<std::string>, std::map<std::string, std::optional<double>>>;
-std::vector<Allowed> to_allowed(const AllowedBodies& bodies) {
-  if (const auto* names = std::get_if<0>(&bodies)) return {names->begin(), names->end()};
-  std::vector<Allowed> allowed;
-  for (const auto& [name, depth] : std::get<1>(bodies)) allowed.emplace_back(name, depth);
-  return allowed;
-}
-
-void bind_scene(py::module_& m) {
-  py::class_<SceneObject>(
-      m, "SceneObject",
-      "A body fixed in the base frame. It does not change: scenes and planners have move().")
-      .def(pickling<SceneObject>())
-      .def(py::init([](std::string name, const PythonShape& shape, const Pose& pose,
-                       const AllowedBodies& allow) {
-             return SceneObject{std::move(name), to_shape(shape), pose, to_allowed(allow)};
-           }),
-           py::arg("name"), py::arg("shape"), py::arg("pose") = py::make_tuple(0, 0, 0),
-           py::arg("allow") = AllowedBodies{},
-           "pose: in the base frame. allow: links and attached bodies that may touch it, or {name: "
-           "how deep, m}; None: however "
-           "deep.")
-      .def_readonly("name", &SceneObject::name)
-      .def_property_readonly("shape",
-                             [](const SceneObject& object) { return from_shape(object.shape); })
-      .def_property_readonly(
-          "pose", [](const SceneObject& object) { return object.pose; },
-          "(4, 4), in the base frame.")
-      .def_property_readonly(
-          "allow",
-          [](const SceneObject& object) {
-            std::vector<std::string> names;
-            for (const Allowed& allowed : object.allow) names.push_back(allowed.body);
-            return names;
-          },
-          "Links and attached bodies that may touch it.")
-      .def_property_readonly(
-          "allow_depth",
-          [](const SceneObject& object) {
-            std::map<std::string, double> depths;
-            for (const Allowed& allowed : object.allow)
-              if (allowed.depth) depths[allowed.body] = *allowed.depth;
-            return depths;
-          },
-          "How deep bodies may be in it, m, by name; those of `allow` that are not here may be "
-          "however deep.")
-      .def("__repr__", [](const SceneObject& object) {
-        const Vector3d at = object.pose.translation();
-        const std::string text = formatted(" at %.4g %.4g %.4g>", at.x(), at.y(), at.z());
-        return "<SceneObject '" + object.name + "': " + shape_words(object.shape) + text;
-      });
-
-  py::class_<Scene> type(
-      m, "Scene", "Bodies in the base frame, by name, in the order in which they were added.");
-  make_copyable(type);
-  type.def(pickling<Scene>());
-  type.def(py::init(&to_scene), py::arg("objects") = py::tuple(),
-           "objects: SceneObjects, as a scene or in any sequence.")
-      .def(
-          "add",
-          [](Scene& scene, std::string name, const PythonShape& shape, const Pose& pose,
-             const AllowedBodies& allow) {
-            if (std::any_of(scene.begin(), scene.end(),
-                            [&](const SceneObject& object) { return object.name == name; }))
-              throw InvalidArgument("'" + name +
-                                    "' is in the scene already: allowed is a name of its own");
-            scene.push_back({std::move(name), to_shape(shape), pose, to_allowed(allow)});
-          },
-          py::arg("name"), py::arg("shape"), py::arg("pose") = py::make_tuple(0, 0, 0),
-          py::arg("allow") = AllowedBodies{},
-          "pose: in the base frame. allow: links and attached bodies that may touch it, or {name: "
-          "how deep, m}; None: however "
-          "deep.")
-      .def(
-          "move",
-          [](Scene& scene, const std::string& name, const Pose& pose) {
-            scene[find_object(scene, name)].pose = pose;
-          },
-          py::arg("name"), py::arg("pose"),
-          "pose: in the base frame. Raises KeyError for an unknown name.")
-      .def(
-          "remove",
-          [](Scene& scene, const std::string& name) {
-            scene.erase(scene.begin() + static_cast<std::ptrdiff_t>(find_object(scene, name)));
-          },
-          py::arg("name"), "Raises KeyError for an unknown name.")
-      .def(
-          "__getitem__",
-          [](const Scene& scene, const std::string& name) {
-            return scene[find_object(scene, name)];
-          },
-          py::arg("name"))
-      .def(
-          "__contains__",
-          [](const Scene& scene, const std::string& name) {
-            return std::any_of(scene.begin(), scene.end(),
-                               [&](const SceneObject& object) { return object.name == name; });
-          },
-          py::arg("name"))
-      .def("__len__", [](const Scene& scene) { return scene.size(); })
-      .def(
-          "__iter__", [](const Scene& scene) -> Typed<"Iterator[SceneObject]"> {
-            py::list objects;  // copies, as the scene may change meanwhile
-            for (const SceneObject& object : scene) objects.append(py::cast(object));
-            return py::iter(objects);
-          })
-      .def("__repr__", [](const Scene& scene) {
-        std::string text;
-        for (const SceneObject& object : scene)
-          text += (text.empty() ? ": '" : ", '") + object.name + "'";
-        return "<Scene of " + std::to_string(scene.size()) + " objects" + text + ">";
-      });
-}
-
-void bind_task(py::module_& m) {
-  bind_enum<EdgeMode>(m, "EdgeMode", "What is proved of motions between layers.",
-                      {{"continuous", EdgeMode::kContinuous}, {"nodes", EdgeMode::kNodes}});
-  bind_enum<CostMetric>(
-      m, "CostMetric", "What a step costs: docs/formats.md, `cost`.",
-      {{"l2", CostMetric::kL2}, {"max", CostMetric::kMax}, {"time", CostMetric::kTime}});
-  PlainStruct<Resolution>(m, "Resolution", "Steps of the lattice, as keywords.")
-      .member("ds", &Resolution::ds, "Along the path, m.")
-      .member("dphi", &Resolution::dphi, "Of the arm angle, rad.")
-      .member("dalpha", &Resolution::dalpha, "Of tool rotation, rad.")
-      .member("arc", &Resolution::arc,
-              "Self-motion between nodes, of arms that have no arm angle, rad.")
-      .member("arcs", &Resolution::arcs, "Nodes on arcs of arm angles that the grid misses.")
-      .member("droll", &Resolution::droll, "Of the roll, of arms of seven joints, rad.")
-      .member("knot", &Resolution::knot,
-              "m, between layers at which such arms choose roll and arm angle anew.")
-      .finish();
-  PlainStruct<Limits>(m, "Limits",
-                      "What is to be kept, as keywords: docs/formats.md. None: no such limit, or "
-                      "the default named there.")
-      .member("clearance", &Limits::clearance, "m, between bodies at layers.")
-      .member("self_clearance", &Limits::self_clearance, "m, between bodies of the robot.")
-      .member("manipulability", &Limits::manipulability, "Least sqrt(det(J J^T)).")
-      .member("joint_margin", &Limits::joint_margin, "rad, kept from both limits of each joint.")
-      .member("joint_step", &Limits::joint_step, "rad, largest move of a joint between layers.")
-      .member("arm_slope", &Limits::arm_slope, "rad/m, largest change of the arm angle.")
-      .member("roll_slope", &Limits::roll_slope, "rad/m, of the roll.")
-      .member("step_error", &Limits::step_error, "rad, second-order estimate of a step.")
-      .member("tool_path_error", &Limits::tool_path_error, "m, tool off its path between layers.")
-      .member("tool_angle_error", &Limits::tool_angle_error, "rad, the same of its orientation.")
-      .member("tool_speed", &Limits::tool_speed, "m/s that the joints must follow.")
-      .member("tool_turn_speed", &Limits::tool_turn_speed, "rad/s that the joints must follow.")
-      .choice("edges", &Limits::edges, "EdgeMode, or its name.")
-      .member("edge_clearance", &Limits::edge_clearance, "m, kept between layers.")
-      .member("edge_tolerance", &Limits::edge_tolerance, "m, how finely that is proved.")
-      .member("joint_speed", &Limits::joint_speed, "rad/s, seven, instead of the URDF's.")
-      .member("joint_acceleration", &Limits::joint_acceleration, "rad/s^2, seven, of motions.")
-      .member("joint_jerk", &Limits::joint_jerk, "rad/s^3, seven, of motions.")
-      .finish();
-  PlainStruct<Cost>(m, "Cost", "What is summed over the steps of a path, as keywords.")
-      .choice("metric", &Cost::metric, "CostMetric, or its name.")
-      .member("weights", &Cost::weights,
-              "Seven, each 0 or 1e-6 to 1e6; None: 1 each, that of the roll of six-joint arms 0.")
-      .member("roll", &Cost::roll,
-              "Per metre and rad that the tool stands turned from the waypoints' own; 0 or 1e-6 to "
-              "1e6.")
-      .finish();
-  PlainStruct<PathSmoothing>(
-      m, "PathSmoothing", "How far the tool may leave the polyline of its waypoints, as keywords.")
-      .member("position", &PathSmoothing::position, "m.")
-      .member("angle", &PathSmoothing::angle, "rad.")
-      .finish();
-  PlainStruct<Refinement>(m, "Refinement", "What refining keeps, as keywords.")
-      .member("smoothing", &Refinement::smoothing,
-              "m, the length over which a bend costs as much as a way of its size.")
-      .member("joint_margin", &Refinement::joint_margin, "rad, kept from limits besides.")
-      .member("singular_margin", &Refinement::singular_margin, "rad, kept from singular angles.")
-      .finish();
-
-  py::class_<Task> type(m, "Task", "What the tool is to do, and within which limits.");
-  make_copyable(type);
-  type.def(pickling<Task>());
-  type.def(py::init([](std::vector<Waypoint> waypoints, std::string frame, const Limits& limits,
-                       const Resolution& resolution, const ArrayLike& start,
-                       std::optional<double> start_at, double start_tolerance, const ArrayLike& end,
-                       const Cost& cost, const std::optional<PathSmoothing>& smooth,
-                       const Refinement& refinement, bool closed) {
-             Task task;
-             task.waypoints = std::move(waypoints);
-             task.path_frame = std::move(frame);
-             task.limits = limits, task.resolution = resolution, task.cost = cost;
-             task.start = to_posture(start, "start"), task.start_at = start_at,
-             task.start_tolerance = start_tolerance, task.end = to_posture(end, "end");
-             task.smooth = smooth, task.refinement = refinement, task.closed = closed;
-             return task;
-           }),
-           py::arg("waypoints"), py::kw_only(), py::arg("frame") = "",
+           py::arg("robot"), py::arg("strokes"), py::arg("scene") = py::tuple(), py::kw_only(),
            py::arg_v("limits", Limits(), "Limits()"),
-           py::arg_v("resolution", Resolution(), "Resolution()"), py::arg("start") = py::none(),
-           py::arg("start_at") = py::none(), py::arg("start_tolerance") = Task().start_tolerance,
-           py::arg("end") = py::none(), py::arg_v("cost", Cost(), "Cost()"),
-           py::arg("smooth") = py::none(), py::arg_v("refinement", Refinement(), "Refinement()"),
-           py::arg("closed") = false,
-           "waypoints: poses of the tool in `frame`: (n, 7) rows x y z qw qx qy qz, (n, 4, 4), or "
-           "a list of either; or (n, 9) rows, "
-           "with the least and the most roll there, rad. frame: the "
-           "base\n"
-           "link (also empty) or the name of a scene object. start: (7,) joints to begin with, "
-           "rad. start_at: m along the path "
-           "where\n"
-           "the start stands. end: (7,) joints to end in at the last waypoint, rad. closed: the "
-           "path must end in the joints in which it begins; its last waypoint is its first.")
-      .def_readwrite("frame", &Task::path_frame,
-                     "Base link (also empty) or the name of a scene object.")
-      .def_readwrite("waypoints", &Task::waypoints,
-                     "(n, 7): x y z (m) qw qx qy qz, in `frame`; with roll_min and roll_max (rad) "
-                     "(n, 9). A copy; assign to change it.")
-      .def_readwrite("smooth", &Task::smooth, "None: the polyline as it is.")
-      .def_readwrite("resolution", &Task::resolution)
-      .def_readwrite("limits", &Task::limits)
+           py::arg_v("resolution", Resolution(), "Resolution()"),
+           py::arg_v("cost", Cost(), "Cost()"),
+           py::arg_v("refinement", Refinement(), "Refinement()"), py::arg("home") = py::none(),
+           py::arg("order") = "given", py::arg("approach") = 0.0, py::arg("retract") = 0.0,
+           py::arg("process_speed") = py::none(), py::arg("approach_speed") = py::none(),
+           py::arg("rapid") = 1.0, py::arg("lift") = py::none(),
+           "Strokes with transitions between them, from a home and back. limits, resolution, "
+           "approach, retract, process_speed and approach_speed hold for strokes that have none of "
+           "their own; limits are kept in transitions, too. home: (7,), rad, or None. order: "
+           "StrokeOrder or its name. rapid: share of the joints' speeds in transitions. lift: "
+           "LiftOffs; None: each stroke is done in one run.");
+  type.def(py::init(&problem_of_arms), py::arg("arms"), py::kw_only(),
+           py::arg("may_touch") = std::vector<std::array<std::string, 2>>(),
+           py::arg("at_rows") = std::vector<int>(),
+           "Two arms that work at one time. arms: two entries, name -> Problem of one path, of one "
+           "robot model with one base link and one `hold`; the `frame` of one path may be the name "
+           "of the other arm, which leads then. The scene is that of the first. One entry may be "
+           "(Robot, Trajectory) instead: an arm whose motion is given, with limits, resolution and "
+           "cost of the other. at_rows: the row of that motion at which each waypoint of the other "
+           "arm is; empty: there is one for each row, or two. may_touch: pairs of bodies, one of "
+           "either arm, that may touch. Raises InvalidArgument.");
+}
+
+/// Binds what problems with strokes have; the package's Problem refuses these words of others.
+void bind_of_strokes(py::class_<Problem, Robot, Task>& type) {
+  type.def_property(
+          "strokes",
+          [](const Problem& problem) -> Typed<"list[Stroke]"> { return *problem.strokes.list; },
+          [](Problem& problem, const Strokes& strokes) {
+            problem.strokes.list = py::list(strokes);
+          },
+          "A list of Strokes, changed in place.")
       .def_property(
-          "start", [](const Task& task) { return task.start; },
-          [](Task& task, const OptionalArray& start) { task.start = to_posture(start, "start"); },
-          "(7,) joints to begin with, rad, or None. A copy; assign to change it.")
-      .def_readwrite("start_at", &Task::start_at, "m along the path, or None.")
-      .def_readwrite("start_tolerance", &Task::start_tolerance, "m and rad.")
+          "home", [](const Problem& problem) { return problem.home; },
+          [](Problem& problem, const OptionalArray& home) {
+            problem.home = to_posture(home, "home");
+          },
+          "(7,), rad, where the arm begins and ends, or None: at its strokes. A copy; assign to "
+          "change it.")
       .def_property(
-          "end", [](const Task& task) { return task.end; },
-          [](Task& task, const OptionalArray& end) { task.end = to_posture(end, "end"); },
-          "(7,) joints to end in, rad, or None. A copy; assign to change it.")
-      .def_readwrite("closed", &Task::closed,
-                     "Whether the path must end in the joints in which it begins.")
-      .def_readwrite("cost", &Task::cost)
-      .def_readwrite("refinement", &Task::refinement)
-      .def(
-          "__eq__", [](const Task& a, const Task& b) { return a == b; }, py::is_operator())
-      .def("__repr__",
-           [](const Task& task) {
-             return "<Task of " + std::to_string(task.waypoints.size()) + " waypoints" +
-                    (task.closed ? ", closed>" : ">");
-           })
-      .attr("__hash__") = py::none();
+          "order", [](const Problem& problem) { return problem.order; },
+          [](Problem& problem, const OrName<StrokeOrder>& order) {
+            problem.order = to_enum<StrokeOrder>(order);
+          },
+          "StrokeOrder.")
+      .def_property(
+          "approach", [](const Problem& problem) { return problem.approach; },
+          [](Problem& problem, const ArrayLike& from) {
+            problem.approach = to_offset(from, "approach");
+          },
+          "From where the tool comes to strokes that do not say it: (3,), m in the tool frame; 0: "
+          "no line. A copy; assign it, or m against the tool's z axis, to change it.")
+      .def_property(
+          "retract", [](const Problem& problem) { return problem.retract; },
+          [](Problem& problem, const ArrayLike& to) { problem.retract = to_offset(to, "retract"); },
+          "Where the tool goes after them, alike.")
+      .def_readwrite("process_speed", &Problem::process_speed,
+                     "m/s along strokes, or None: limits.tool_speed.")
+      .def_readwrite("approach_speed", &Problem::approach_speed,
+                     "m/s along approach and retract, or None: as on the stroke.")
+      .def_readwrite("rapid", &Problem::rapid, "Share of the joints' speeds in transitions, to 1.")
+      .def_readwrite("lift", &Problem::lift,
+                     "LiftOffs, where the tool may lift off within strokes, in the given order of "
+                     "strokes; None: each is done in one run.");
 }
 
 }  // namespace
 
-std::optional<Config> to_posture(py::handle joints, const char* name) {
-  if (joints.is_none()) return {};
-  const Array array = to_array(joints, "joints: (7,), rad");
-  if (array.ndim() != 1 || array.shape(0) != kDof)
-    throw py::value_error(std::string(name) + " of shape " + shape_text(array) +
-                          ": allowed is (7,), rad");
-  return Config(Eigen::Map<const Config>(array.data()));
-}
-
-Waypoint to_waypoint(py::handle source, bool position_alone) {
-  const char* const allowed =
-      position_alone
-          ? "a pose: (4, 4), [x y z qw qx qy qz] or [x y z]"
-          : "poses: (4, 4), [x y z qw qx qy qz] or [x y z qw qx qy qz roll_min roll_max]";
-  const Array values = to_array(source, allowed);
-  const double* const v = values.data();
-  if (values.ndim() == 1 && values.shape(0) == 7)
-    return {{v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]}};
-  if (values.ndim() == 1 && values.shape(0) == 9 && !position_alone)
-    return {{v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]}, Roll{v[7], v[8]}};
-  if (values.ndim() == 1 && values.shape(0) == 3 && position_alone) return {{v[0], v[1], v[2]}};
-  if (values.ndim() != 2 || values.shape(0) != 4 || values.shape(1) != 4)
-    throw py::value_error("pose of shape " + shape_text(values) + ": allowed are " + allowed);
-  const Eigen::Matrix4d X = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(v);
-  const Matrix3d R = X.topLeftCorner<3, 3>();
-  if (!X.allFinite() ||
-      !((R.transpose() * R - Matrix3d::Identity()).cwiseAbs().maxCoeff() <= 1e-6) ||
-      R.determinant() <= 0 || X.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
-    throw py::value_error(
-        "pose is no rigid transform: allowed are a rotation within 1e-6, a finite translation, 0 0 "
-        "0 1 below");
-  return {X.topRightCorner<3, 1>(), Quaterniond(R)};
-}
-
-Pose to_pose(py::handle source) {
-  const Waypoint waypoint = to_waypoint(source, true);
-  const double norm = waypoint.orientation.norm();
-  if (!(std::abs(norm - 1) <= 1e-3)) {
-    const std::string text =
-        formatted("pose: quaternion of length %g: allowed is 1 within 1e-3", norm);
-    throw py::value_error(text);
-  }
-  Pose pose = Pose::Identity();
-  pose.translation() = waypoint.position;
-  const Array values = Array::ensure(source);
-  if (values.ndim() == 2)
-    pose.linear() = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(values.data())
-                        .topLeftCorner<3, 3>();
-  else
-    pose.linear() = waypoint.orientation.normalized().toRotationMatrix();
-  return pose;
-}
-
-std::vector<Waypoint> to_waypoints(py::handle source) {
-  if (!py::isinstance<py::iterable>(source))
-    throw py::value_error("waypoints: allowed are (n, 7), (n, 4, 4) or a list of poses");
-  std::vector<Waypoint> waypoints;
-  for (const py::handle item : source) {
-    try {
-      waypoints.push_back(to_waypoint(item, false));
-    } catch (const py::value_error& error) {
-      throw py::value_error("waypoints[" + std::to_string(waypoints.size()) + "]: " + error.what());
+Problem problem_of_arms(const ArmsByName& arms,
+                        const std::vector<std::array<std::string, 2>>& touch,
+                        const std::vector<int>& at_rows) {
+  if (arms.size() != 2)
+    throw py::value_error("arms: has " + std::to_string(arms.size()) +
+                          " entries: allowed are two, name -> Problem");
+  auto cell = std::make_shared<swivel::Problem>(two_arms());
+  std::size_t k = 0;
+  const PathProblem* first_problem = nullptr;
+  for (const auto& [name, value] : arms) {
+    ArmTask& arm = cell->arms[k++];
+    arm.name = py::str(name);
+    if (py::isinstance<py::tuple>(value)) continue;  // its motion is given
+    const auto& problem = path_of(value.cast<const Problem&>(), "arms");
+    static_cast<Robot&>(arm) = problem;
+    static_cast<Task&>(arm.path()) = problem;
+    if (!at_rows.empty()) arm.path().steps = steps_of(at_rows);
+    if (first_problem == nullptr) {
+      first_problem = &problem;
+      cell->scene = problem.scene;
+      cell->vary = problem.vary;
+      cell->source = problem.source;
+    } else if (!problem.scene.empty() && !same_places(problem.scene, cell->scene)) {
+      throw py::value_error(
+          "arms: have different scenes: allowed is one scene, or none of the "
+          "second arm");
     }
-    if (waypoints.back().roll.has_value() != waypoints.front().roll.has_value())
-      throw py::value_error("waypoints[" + std::to_string(waypoints.size() - 1) +
-                            "]: roll_min and roll_max are not given at all waypoints: allowed are "
-                            "rows that all have them, or none");
   }
-  return waypoints;
-}
-
-void pass_half_turns(const Robot& robot, std::vector<Waypoint>& waypoints) {
-  if (robot.roll && robot.roll->circle()) io::choose_sides(waypoints);
-}
-
-py::array_t<double> from_waypoints(const std::vector<Waypoint>& waypoints) {
-  const bool rolls = !waypoints.empty() && waypoints.front().roll;
-  py::array_t<double> array(
-      {static_cast<py::ssize_t>(waypoints.size()), py::ssize_t{rolls ? 9 : 7}});
-  double* out = array.mutable_data();
-  for (const auto& [position, q, roll] : waypoints) {
-    for (const double value :
-         {position.x(), position.y(), position.z(), q.w(), q.x(), q.y(), q.z()})
-      *out++ = value;
-    if (rolls) *out++ = roll->lower, *out++ = roll->upper;
+  if (first_problem == nullptr)
+    throw py::value_error("arms: both motions are given: allowed is one Problem at least");
+  k = 0;
+  for (const auto& [name, value] : arms) {
+    ArmTask& arm = cell->arms[k++];
+    if (!py::isinstance<py::tuple>(value)) continue;
+    const auto& [robot, motion] = value.cast<std::pair<const Robot*, const Trajectory*>>();
+    give(arm, *robot, *motion, *first_problem);
   }
-  return array;
+  // Two Robots of Python that were loaded from one file have a model each.
+  const RobotModel &first = *cell->arms[0].model, &second = *cell->arms[1].model;
+  if (first.source == second.source && first.links.size() == second.links.size() &&
+      first.joints.size() == second.joints.size())
+    cell->arms[1].model = cell->arms[0].model;
+  cell->may_touch = touch;
+  validate(*cell);
+  Problem made;
+  static_cast<Robot&>(made) = cell->arm();
+  made.two = std::move(cell);
+  return made;
 }
 
-py::array_t<double> to_joints(py::handle source, const char* what) {
-  Array array = to_array(source, "joints: (7,) or (n, 7), rad");
-  if (array.ndim() == 1 && array.shape(0) == kDof) array = array.reshape({1, kDof});
-  if (array.ndim() != 2 || array.shape(1) != kDof)
-    throw py::value_error(std::string(what) + " of shape " + shape_text(array) +
-                          ": allowed are (7,) and (n, 7)");
-  return array;
+swivel::Problem to_core(const Problem& problem) {
+  if (problem.two) return *problem.two;
+  if (!problem.strokes.list) return one_path(problem);
+  swivel::Problem core;
+  ArmTask& arm = core.arm();
+  static_cast<Robot&>(arm) = problem;
+  core.source = problem.source, core.scene = problem.scene, core.vary = problem.vary;
+  arm.transition_limits = problem.limits, arm.home = problem.home, arm.order = problem.order;
+  arm.process_speed = problem.process_speed, arm.approach_speed = problem.approach_speed;
+  arm.rapid = problem.rapid, arm.lift = problem.lift;
+  for (Stroke& stroke : problem.strokes.all()) {
+    swivel::Stroke& made = arm.strokes.emplace_back();
+    made.name = std::move(stroke.name), made.waypoints = std::move(stroke.waypoints);
+    pass_half_turns(arm, made.waypoints);
+    made.path_frame = std::move(stroke.frame), made.smooth = stroke.smooth;
+    made.limits = stroke.limits.value_or(problem.limits);
+    made.resolution = stroke.resolution.value_or(problem.resolution);
+    made.cost = problem.cost, made.refinement = problem.refinement;
+    made.reversible = stroke.reversible;
+    made.approach = stroke.approach.value_or(problem.approach);
+    made.retract = stroke.retract.value_or(problem.retract);
+    made.process_speed = stroke.process_speed, made.approach_speed = stroke.approach_speed;
+    made.feed = std::move(stroke.feed), made.end = stroke.end, made.closed = stroke.closed;
+  }
+  if (is_path(core)) throw InvalidArgument("strokes: name: allowed are non-empty names");
+  validate(core);
+  return core;
 }
 
-void bind_problem(py::module_& m) {
-  m.def("pose", &make_pose, py::arg("xyz") = py::make_tuple(0, 0, 0), py::arg("rpy") = py::none(),
-        py::arg("quat") = py::none(), py::arg("axis") = py::none(), py::arg("tangent") = py::none(),
-        "A pose as a (4, 4) array. xyz: m. rpy: roll, pitch, yaw about the fixed axes x, y, z, "
-        "rad, as in a URDF. quat: w x y z, of\n"
-        "any length but 0. axis: direction of the z axis, against a surface's outward normal; x "
-        "points along the part of\n"
-        "`tangent` that is perpendicular to it, or is the x axis turned as little as can be.");
-  bind_shapes(m);
-  bind_robot(m);
-  bind_scene(m);
-  bind_task(m);
+Problem from_core(swivel::Problem core) {
+  Problem problem;
+  if (core.arms.size() == 2) {
+    static_cast<Robot&>(problem) = core.arm();
+    problem.two = std::make_shared<const swivel::Problem>(std::move(core));
+    return problem;
+  }
+  ArmTask& arm = core.arm();
+  static_cast<Robot&>(problem) = arm;
+  problem.source = std::move(core.source), problem.scene = std::move(core.scene);
+  problem.vary = std::move(core.vary);
+  if (is_path(core)) {
+    static_cast<Task&>(problem) = arm.path();
+    return problem;
+  }
+  problem.limits = arm.transition_limits, problem.home = arm.home, problem.order = arm.order;
+  problem.process_speed = arm.process_speed, problem.approach_speed = arm.approach_speed;
+  problem.rapid = arm.rapid, problem.lift = arm.lift;
+  std::vector<Stroke> strokes;
+  for (swivel::Stroke& stroke : arm.strokes) {
+    problem.cost = stroke.cost, problem.refinement = stroke.refinement;  // files have one for all
+    const bool own_limits = stroke.limits != arm.transition_limits;
+    strokes.push_back({std::move(stroke.name), std::move(stroke.waypoints),
+                       std::move(stroke.path_frame), stroke.smooth, stroke.reversible,
+                       stroke.approach, stroke.retract, stroke.process_speed, stroke.approach_speed,
+                       std::move(stroke.feed),
+                       own_limits ? std::optional(stroke.limits) : std::nullopt, stroke.resolution,
+                       stroke.end, stroke.closed});
+  }
+  share(strokes, &Stroke::resolution, problem.resolution);
+  share(strokes, &Stroke::approach, problem.approach);
+  share(strokes, &Stroke::retract, problem.retract);
+  problem.strokes.set(strokes);
+  return problem;
+}
 
-  py::class_<PathProblem, Robot, Task> type(
-      m, "Problem", "A robot, its task and the scene: what a problem file says.");
+swivel::Problem to_core(const ProblemOrFile& problem) {
+  if (const auto* made = std::get_if<const Problem*>(&problem)) return to_core(**made);
+  const std::filesystem::path& file = std::get<std::filesystem::path>(problem);
+  return interruptible([&](const std::stop_token&) { return io::load_problem(file); });
+}
+
+const PathProblem& path_of(const Problem& problem, const char* what) {
+  if (problem.two || problem.strokes.list)
+    throw InvalidArgument(std::string(what) + ": a problem " +
+                          (problem.two ? "of two arms" : "with strokes") +
+                          ": allowed is one of one path");
+  return problem;
+}
+
+void bind_whole_problem(py::module_& m) {
+  py::class_<Problem, Robot, Task> type(
+      m, "Problem",
+      "What a problem file says: a robot, the scene, and one path or strokes; or two arms.");
   make_copyable(type);
-  type.def(pickling<PathProblem>());
-  type.def(
-          py::init([](const Robot& robot, const Task& task, const SceneObjects& scene) {
-            PathProblem problem;
-            static_cast<Robot&>(problem) = robot;
-            static_cast<Task&>(problem) = task;
-            problem.scene = to_scene(scene);
-            pass_half_turns(problem, problem.waypoints);
-            return problem;
-          }),
-          py::arg("robot"), py::arg("task"), py::arg("scene") = py::tuple(),
-          "A tool that may turn freely about its z axis passes half turns between waypoints: those "
-          "behind a half turn about another axis are turned by 180 deg about z.")
-      .def_property(
-          "waypoints", [](const PathProblem& problem) { return problem.waypoints; },
-          [](PathProblem& problem, std::vector<Waypoint> waypoints) {
+  type.def(pickling<Problem>());
+  bind_constructors(type);
+  type.def_property(
+          "waypoints", [](const Problem& problem) { return problem.waypoints; },
+          [](Problem& problem, std::vector<Waypoint> waypoints) {
             pass_half_turns(problem, waypoints);
             problem.waypoints = std::move(waypoints);
           },
           "As of a Task. A copy; assign to change it.")
-      .def_readonly("source", &PathProblem::source, "The file; empty of problems made in memory.")
-      .def_readwrite("scene", &PathProblem::scene, "Scene, changed in place.")
       .def_property_readonly(
-          "robot", [](const PathProblem& problem) { return Robot(problem); }, "A copy.")
+          "source",
+          [](const Problem& problem) { return problem.two ? problem.two->source : problem.source; },
+          "The file; empty of problems made in memory.")
+      .def_readwrite("scene", &Problem::scene, "Scene, changed in place.")
       .def_property_readonly(
-          "task", [](const PathProblem& problem) { return Task(problem); }, "A copy.")
+          "robot", [](const Problem& problem) { return Robot(problem); }, "A copy.")
+      .def_property_readonly(
+          "task", [](const Problem& problem) { return Task(problem); }, "A copy, of one path.")
+      .def_property_readonly("arms", &arms_of,
+                             "The problem of each of two arms by itself; else this one. Copies.")
+      .def_property_readonly(
+          "names",
+          [](const Problem& problem) {
+            std::vector<std::string> names;
+            if (problem.two)
+              for (const ArmTask& arm : problem.two->arms) names.push_back(arm.name);
+            return names;
+          },
+          "Of two arms, in the order of `arms`; else empty.")
       .def(
-          "validate", [](const PathProblem& problem) { validate(problem); },
-          "Raises InvalidArgument, which names the member, for what no problem may have.")
+          "validate",
+          [](const Problem& problem) {
+            if (problem.two || problem.strokes.list)
+              static_cast<void>(to_core(problem));
+            else
+              validate(static_cast<const PathProblem&>(problem));
+          },
+          "Raises InvalidArgument, which names stroke and member, for what no problem may have.")
       .def(
           "placed",
-          [](const PathProblem& problem, const Offset& offset,
-             const std::optional<std::string>& object, bool path, bool base,
+          [](const Problem& problem, const Offset& offset, const std::optional<std::string>& object,
+             bool path, bool base, const std::optional<std::string>& arm,
              const HeldPositions& hold) {
-            return placed_problem(held_as(problem, hold),
-                                  to_movable(object, path, base, !hold.empty()), offset);
+            return from_core(placed_problem(held_as(to_core(problem), hold),
+                                            to_movable(object, path, base, !hold.empty(), arm),
+                                            offset));
           },
           py::arg("offset"), py::kw_only(), py::arg("object") = py::none(), py::arg("path") = false,
-          py::arg("base") = false, py::arg("hold") = HeldPositions(),
-          "The problem of one placement: an object of the scene, the path or the robot moved by x "
-          "y z (m) roll pitch yaw (rad) in "
-          "the\n"
-          "base frame, about its own origin, with the joints of `hold` held there, rad or m.")
+          py::arg("base") = false, py::arg("arm") = py::none(), py::arg("hold") = HeldPositions(),
+          "The problem of one placement: an object of the scene with the paths on it, the paths of "
+          "all strokes or both arms (a follower's with its leader's tool), that of `arm` alone (a "
+          "follower's in the frame of its leader's tool), or the robot moved by x y z (m) roll "
+          "pitch yaw (rad) in the base frame, about its own origin, with the joints of `hold` held "
+          "there, rad or m.")
       .def(
           "episode",
-          [](const PathProblem& problem, std::uint64_t seed, std::uint64_t episode) {
-            return episode_problem(problem, seed, episode);
+          [](const Problem& problem, std::uint64_t seed, std::uint64_t episode) {
+            return from_core(episode_problem(to_core(problem), seed, episode));
           },
           py::arg("seed"), py::arg("episode"),
           "The problem of this episode of a campaign: objects moved as the file's `vary` says.")
-      .def(
-          "save",
-          [](PathProblem problem, const std::filesystem::path& file) {
-            interruptible([&](const std::stop_token&) {
-              io::save_problem(problem, file);
-              return true;
-            });
-          },
-          py::arg("file"),
-          "Writes a problem file that gives this problem when it is loaded. Of a problem that was "
-          "loaded from a file it is that file with what has changed since: comments, order and "
-          "layout stay, names of files are as seen from the new place. A problem made in memory is "
-          "written whole. The file is replaced as a whole, or left as it was. Raises InputError "
-          "for what no file can say, and InvalidArgument.")
+      .def("save", &save, py::arg("file"),
+           "Writes a problem file that gives this problem when it is loaded; not of two arms. Of a "
+           "problem that was loaded from a file it is that file with what has changed since: "
+           "comments, order and layout stay, names of files are as seen from the new place. A "
+           "problem made in memory is written whole. The file is replaced as a whole, or left as "
+           "it was. Raises InputError for what no file can say, and InvalidArgument.")
       .def(
           "stretch",
-          [](const PathProblem& problem, double begin, std::optional<double> end) {
+          [](const Problem& problem, double begin, std::optional<double> end) {
             PathRange range{begin};
             if (end) range.to = *end;
-            return problem_of_range(problem, range);
+            return Problem(problem_of_range(path_of(problem, "stretch"), range));
           },
           py::arg("begin"), py::arg("end") = py::none(),
-          "The problem of a stretch of the path alone, between two arc lengths, m, which the arm "
+          "The problem of a stretch of one path alone, between two arc lengths, m, which the arm "
           "begins and ends in any posture. end: None for the path's end. Raises InvalidArgument.")
-      .def("__repr__", [](const PathProblem& problem) {
-        return "<Problem" + (problem.source.empty() ? "" : " '" + problem.source + "'") + ": " +
-               robot_words(problem) + "; " + std::to_string(problem.waypoints.size()) +
-               " waypoints, " + std::to_string(problem.scene.size()) + " objects>";
-      });
+      .def("_kind",
+           [](const Problem& problem) {
+             return problem.two ? "two arms" : problem.strokes.list ? "strokes" : "one path";
+           })
+      .def(
+          "__eq__",
+          [](const Problem& a, const Problem& b) {
+            const bool paths = !a.strokes.list && !a.two && !b.strokes.list && !b.two;
+            return paths ? static_cast<const Task&>(a) == b : &a == &b;
+          },
+          py::is_operator())
+      .def("__repr__", &problem_words)
+      .attr("__hash__") = py::none();
+  bind_of_strokes(type);
   m.def(
-      "load_problem",
+      "load",
       [](const std::filesystem::path& file) {
-        return interruptible([&](const std::stop_token&) { return io::load_path_problem(file); });
+        return from_core(
+            interruptible([&](const std::stop_token&) { return io::load_problem(file); }));
       },
       py::arg("file"),
-      "A problem file, docs/formats.md. Raises InputError, which names file and line.");
+      "A problem file, docs/formats.md: one path, strokes or two arms. Raises InputError, which "
+      "names file and line.");
 }
 
 }  // namespace swivel::python

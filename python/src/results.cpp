@@ -101,7 +101,8 @@ void save_trajectory(const Trajectory& trajectory, const std::filesystem::path& 
 
 std::variant<Trajectory, Motion> load_trajectory(const std::filesystem::path& name,
                                                  const std::vector<std::string>& names,
-                                                 const PathProblem* problem) {
+                                                 const Problem* given) {
+  const PathProblem* const problem = given != nullptr ? &path_of(*given, "problem") : nullptr;
   const io::JointNames joint_names = to_joint_names(names);
   io::TrajectoryFile file = io::load_trajectory_file(name, joint_names);
   const bool timed = !file.timed.empty();
@@ -651,13 +652,7 @@ void bind_trajectory(py::module_& m) {
           "bend", [](const RefinedPath& x) { return x.refined->bend; }, "rad/m^2.")
       .def("__repr__",
            [](const RefinedPath& x) { return "<Refined " + refined_words(*x.refined) + ">"; });
-  m.def("load_trajectory", &load_trajectory, py::arg("file"), py::arg("joint_names"),
-        py::arg("problem") = py::none(),
-        "A Trajectory, or a Motion where the file has times: any CSV, JSON, YAML or MCAP that "
-        "`swivel check` reads. The file's joint "
-        "names must be those given. What the file does not state (s, phi, branch, roll; of motions "
-        "speeds and accelerations) is "
-        "worked out from the joints and the problem. Raises InputError.");
+  m.def("_load_trajectory", &load_trajectory);
 }
 
 void bind_plan(py::module_& m) {

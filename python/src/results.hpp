@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bindings.hpp"
+#include "problem.hpp"
 #include "swivel/core/answer/advice.hpp"
 #include "swivel/io/motions/motion.hpp"
 #include "swivel/planner/refine/motion.hpp"

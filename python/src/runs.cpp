@@ -12,8 +12,8 @@
 
 #include "archive.hpp"
 #include "interruptible.hpp"
-#include "job.hpp"
 #include "plan_keywords.hpp"
+#include "problem.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/study/grid_refinement.hpp"
@@ -417,17 +417,6 @@ class Cells {
   std::uint64_t seed_;
 };
 
-swivel::Problem to_planned(const PathProblem& problem) {
-  return one_path(problem);
-}
-/// Throws as to_core() does.
-swivel::Problem to_planned(const Job& job) {
-  return to_core(job);
-}
-swivel::Problem to_planned(const Workcell& cell) {
-  return *cell.cell;
-}
-
 /// Returns a robot for all plans of a problem of one arm; null for two arms, each plan of which
 /// prepares both.
 std::shared_ptr<const PreparedRobot> prepare(const swivel::Problem& planned,
@@ -539,25 +528,6 @@ class Campaigner {
   std::shared_ptr<const PreparedRobot> robot_;
 };
 
-template <class Given>
-auto placer_of() {
-  return py::init([](const Given& given, const std::optional<std::string>& object, bool path,
-                     bool base, bool only_held, const std::optional<std::string>& arm,
-                     std::vector<HeldRange> joints, const py::object& planner, int threads,
-                     std::optional<double> timeout, bool prove) {
-    return std::make_unique<Placer>(to_planned(given),
-                                    to_movable(object, path, base, only_held, arm),
-                                    std::move(joints), planner, threads, timeout, prove);
-  });
-}
-template <class Given>
-auto campaigner_of() {
-  return py::init([](const Given& given, std::uint64_t episodes, std::uint64_t seed,
-                     const py::object& planner, int threads, bool prove) {
-    return std::make_unique<Campaigner>(to_planned(given), episodes, seed, planner, threads, prove);
-  });
-}
-
 void bind_parts(py::module_& m) {
   py::class_<GridRefinement>(m, "_Refinement")
       .def("next", &GridRefinement::next)
@@ -572,26 +542,26 @@ void bind_parts(py::module_& m) {
       .def("offsets", &Cells::offsets)
       .def("refinement", &Cells::refinement);
   py::class_<Placer>(m, "_Placer")
-      .def(placer_of<PathProblem>())
-      .def(placer_of<Job>())
-      .def(placer_of<Workcell>())
+      .def(py::init([](const Problem& problem, const std::optional<std::string>& object, bool path,
+                       bool base, bool only_held, const std::optional<std::string>& arm,
+                       std::vector<HeldRange> joints, const py::object& planner, int threads,
+                       std::optional<double> timeout, bool prove) {
+        return std::make_unique<Placer>(to_core(problem),
+                                        to_movable(object, path, base, only_held, arm),
+                                        std::move(joints), planner, threads, timeout, prove);
+      }))
       .def("plan", &Placer::plan)
       .def_property_readonly("stopped", &Placer::stopped);
   py::class_<Campaigner>(m, "_Campaigner")
-      .def(campaigner_of<PathProblem>())
-      .def(campaigner_of<Job>())
-      .def(campaigner_of<Workcell>())
+      .def(py::init([](const Problem& problem, std::uint64_t episodes, std::uint64_t seed,
+                       const py::object& planner, int threads, bool prove) {
+        return std::make_unique<Campaigner>(to_core(problem), episodes, seed, planner, threads,
+                                            prove);
+      }))
       .def("plan",
            [](Campaigner& self, std::uint64_t index, std::uint64_t count, const py::object& each) {
              return self.plan({index, count}, each);
            });
-  m.def("_load_problem_file", [](const std::filesystem::path& file) {
-    auto read = interruptible([&](const std::stop_token&) { return io::load_problem(file); });
-    if (read.arms.size() == 2)
-      return py::cast(Workcell{std::make_shared<const swivel::Problem>(std::move(read))});
-    return is_path(read) ? py::cast(problem_of_run(read, {0, false}))
-                         : py::cast(from_core(std::move(read)));
-  });
 }
 
 }  // namespace

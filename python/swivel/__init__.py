@@ -7,15 +7,15 @@ tip. Arrays in results are read-only views, which keep alive what they show. Tra
 motions are sequences of rows; numpy.asarray() takes their joints, and pandas.DataFrame() all
 columns.
 
-    problem = swivel.load_problem("problem.yaml")
+    problem = swivel.load("problem.yaml")
     plan = swivel.plan(problem)
     if plan.solved:
         print(plan.joints)
     else:
         print(plan.diagnosis.cause)
 
-A job of many strokes is loaded by load_job() and planned by plan_job(); Two arms are loaded by
-load_workcell() and planned by plan_workcell(). place() and campaign() take all three.
+A problem has one path, many strokes, or two arms. load() reads every kind, and plan(), check(),
+time(), place(), campaign(), report() and certificate() take every kind.
 """
 from __future__ import annotations as _annotations
 
@@ -28,9 +28,15 @@ from ._swivel import *  # noqa: F401,F403
 from ._swivel import __version__  # noqa: F401
 from . import drawings as _drawings
 from . import rows as _rows
-from .drawings import certificate, check_certificate, map_svg, report  # noqa: F401
+from .drawings import (  # noqa: F401
+    certificate,
+    check_certificate,
+    load_certificate,
+    map_svg,
+    report,
+)
 from .rows import TrajectoryRow  # noqa: F401
-from .runs import campaign, place  # noqa: F401
+from .runs import _loaded, campaign, place  # noqa: F401
 
 __all__ = [name for name in vars(_swivel) if not name.startswith("_")]
 
@@ -52,9 +58,51 @@ for _name in __all__:
         _thing.__reduce__ = lambda member: (getattr, (type(member), member.name))
     elif hasattr(_thing, "__setstate__") and not issubclass(_thing, Exception):
         _thing.__reduce__ = lambda thing: (_restore, (type(thing), thing.__getstate__()))
-for _thing in (TrajectoryRow, campaign, certificate, check_certificate, map_svg, place, report):
+for _thing in (
+    TrajectoryRow, campaign, certificate, check_certificate, load_certificate, map_svg, place, report
+):
     _thing.__module__ = __name__
 _rows.extend()
+
+# Words of a Problem -> the kinds of problems that have them; the others are of all kinds.
+_OF_KINDS = {name: ("one path", "strokes") for name in vars(Robot)}  # noqa: F405
+_OF_KINDS.update(
+    dict.fromkeys("scene robot limits resolution cost refinement".split(), ("one path", "strokes"))
+)
+_OF_KINDS.update(
+    dict.fromkeys(
+        "task waypoints frame smooth start start_at start_tolerance end closed".split(),
+        ("one path",),
+    )
+)
+_OF_KINDS.update(
+    dict.fromkeys(
+        "strokes home order approach retract process_speed approach_speed rapid lift".split(),
+        ("strokes",),
+    )
+)
+
+
+def _require_word(problem, name):
+    """Raises AttributeError for a word that problems of another kind have."""
+    kinds = _OF_KINDS.get(name, ()) if not name.startswith("_") else ()
+    if kinds and problem._kind() not in kinds:
+        raise AttributeError(
+            f"{name}: of a problem of {problem._kind()}: allowed with {' or '.join(kinds)}"
+        )
+
+
+def _get_word(self, name):
+    _require_word(self, name)
+    return object.__getattribute__(self, name)
+
+
+def _set_word(self, name, value):
+    _require_word(self, name)
+    object.__setattr__(self, name, value)
+
+
+Problem.__getattribute__, Problem.__setattr__ = _get_word, _set_word  # noqa: F405
 _drawings.extend()
 # A planner is its problem: what it remembers of earlier plans only saves time.
 Planner.__reduce__ = lambda planner: (Planner, (planner.problem,))  # noqa: F405
@@ -66,6 +114,8 @@ __all__ += [
     "check",
     "check_certificate",
     "compute_cartesian_path",
+    "load_certificate",
+    "load_trajectory",
     "map_svg",
     "measure",
     "place",
@@ -77,9 +127,16 @@ __all__ += [
 
 
 def _planner(problem):
-    if isinstance(problem, (str, _os.PathLike)):
-        problem = load_problem(problem)  # noqa: F405
-    return Planner(problem)  # noqa: F405
+    return Planner(_loaded(problem))  # noqa: F405
+
+
+def _refuse(problem, kinds, **given):
+    """Raises InvalidArgument for a keyword that was given and that only these kinds have."""
+    for name, value in given.items():
+        if value is not None and value is not False and problem._kind() not in kinds:
+            raise InvalidArgument(  # noqa: F405
+                f"{name}: of a problem of {problem._kind()}: allowed with {' or '.join(kinds)}"
+            )
 
 
 def plan(
@@ -99,44 +156,89 @@ def plan(
     turn_speed: float | None = None,
     rate: float | None = None,
     chord: float | None = None,
-) -> Plan:
+) -> Any:
     """Plans one problem, once.
 
-    problem: a Problem, or the name of its file. The others are those of Planner.plan().
+    problem: a Problem, or the name of its file. The others are those of Planner.plan(); check,
+    check_motions, cost and chord are of one path, refine is not of strokes. Planners are 'parallel'
+    and 'lazy' for strokes and two arms. With speed, turn_speed or rate strokes have a motion in
+    time; speed holds instead of their speeds and feeds. Two arms have one with speed, that of the
+    faster tool (a follower's on its leader's), by one clock.
 
-    Returns a Plan. Raises InputError and InvalidArgument for a problem that makes no sense.
+    Returns a Plan of one path, a JobPlan of strokes, a WorkcellPlan of two arms; no answer is one,
+    not an exception. Raises InputError and InvalidArgument for a problem that makes no sense, and
+    what a function raised.
     """
-    return _planner(problem).plan(
-        planner=planner,
-        threads=threads,
-        timeout=timeout,
-        prove=prove,
-        evidence=evidence,
-        check=check,
-        check_motions=check_motions,
-        cost=cost,
-        progress=progress,
-        refine=refine,
-        speed=speed,
-        turn_speed=turn_speed,
-        rate=rate,
-        chord=chord,
+    problem = _loaded(problem)
+    shared = dict(
+        planner=planner, threads=threads, timeout=timeout, prove=prove, evidence=evidence,
+        progress=progress, speed=speed, turn_speed=turn_speed, rate=rate
     )
+    own = dict(check=check, check_motions=check_motions, cost=cost, chord=chord)
+    _refuse(problem, ("one path",), **own)
+    _refuse(problem, ("one path", "two arms"), refine=refine)
+    if problem._kind() == "strokes":
+        return _swivel._plan_strokes(problem, **shared)
+    if problem._kind() == "two arms":
+        return _swivel._plan_two_arms(problem, refine=refine, **shared)
+    return Planner(problem).plan(refine=refine, **own, **shared)  # noqa: F405
 
 
-def check(problem: Problem | _File, trajectory: Trajectory | Motion) -> Check:
-    """Proves a Trajectory or a Motion from the problem alone, as Planner.check() does.
+def check(
+    problem: Problem | _File, rows: _Rows, *, speed: float | None = None
+) -> Check | JobCheck | WorkcellCheck:
+    """Proves rows from the problem alone, or says what is wrong with them.
 
-    problem: a Problem, or the name of its file.
+    problem: a Problem, or the name of its file. rows: what plan() or time() returned, or the name
+    of a file of a trajectory or a motion, of any format; of one path a Trajectory or a Motion, of
+    strokes a list of JobParts or a JobMotion, of two arms name -> Trajectory or name -> Motion, or a
+    WorkcellMotion. speed: m/s along all strokes, where a motion was made with it.
+
+    Returns a Check of one path, a JobCheck of strokes, a WorkcellCheck of two arms. Raises
+    InputError and InvalidArgument.
     """
-    return _planner(problem).check(trajectory)
+    problem = _loaded(problem)
+    _refuse(problem, ("strokes",), speed=speed)
+    if problem._kind() == "strokes":
+        return _swivel._check_strokes(problem, rows, speed=speed)
+    if problem._kind() == "two arms":
+        return _swivel._check_two_arms(problem, rows)
+    return Planner(problem).check(_rows_of_path(problem, rows))  # noqa: F405
+
+
+def _rows_of_path(problem, rows):
+    """Returns the Trajectory or Motion that is given as a plan, or as a file."""
+    if isinstance(rows, Plan):  # noqa: F405
+        return rows.trajectory
+    return load_trajectory(rows, problem=problem) if isinstance(rows, (str, _os.PathLike)) else rows
+
+
+def load_trajectory(
+    file: _File, joint_names: Sequence[str] | None = None, problem: Problem | _File | None = None
+) -> Any:
+    """Loads rows from any file that `swivel check` reads: CSV, JSON, YAML or MCAP.
+
+    joint_names: those of the file; None: those of the problem. problem: a Problem of one arm, or
+    the name of its file, from which what the file does not state (s, phi, branch, roll, of motions
+    speeds and accelerations) is worked out; needed for strokes.
+
+    Returns a Trajectory, or a Motion where the file has times; of strokes a list of JobParts, or a
+    JobMotion. Raises InputError.
+    """
+    problem = None if problem is None else _loaded(problem)
+    if problem is not None:
+        _refuse(problem, ("one path", "strokes"), load_trajectory=file)
+        if problem._kind() == "strokes":
+            return _swivel._load_parts(file, problem)
+        joint_names = problem.joint_names if joint_names is None else joint_names
+    return _swivel._load_trajectory(file, list(joint_names or ()), problem)
 
 
 def measure(problem: Problem | _File, trajectory: Trajectory) -> Measures:
     """Measures what a trajectory comes near to and how well it follows its path.
 
-    Arguments and result are those of Planner.measure(). problem: a Problem, or the name of its
-    file.
+    Arguments and result are those of Planner.measure(). problem: a Problem of one path, or the name
+    of its file.
     """
     return _planner(problem).measure(trajectory)
 
@@ -146,32 +248,55 @@ def refine(
 ) -> Refined:
     """Moves the arm angles of a trajectory off the grid, as Planner.refine() does.
 
-    problem: a Problem, or the name of its file. timeout: s, or None.
+    problem: a Problem of one path, or the name of its file. timeout: s, or None.
     """
     return _planner(problem).refine(trajectory, timeout=timeout)
 
 
 def time(
-    problem: Problem | _File, trajectory: Trajectory, *, speed: float | None = None,
+    problem: Problem | _File, rows: _Rows, *, speed: float | None = None,
     turn_speed: float | None = None, rate: float = 250.0, chord: float | None = None,
-    timeout: float | None = None
-) -> Motion:
-    """Makes a trajectory a motion in time, as Planner.time() does.
+    refine: bool = False, timeout: float | None = None
+) -> Any:
+    """Makes rows a motion in time, and proves it.
 
-    problem: a Problem, or the name of its file. speed: of the tool, m/s; turn_speed: rad/s; without
-    them those of the problem's limits hold. rate: samples a second. chord: m. timeout: s, or None.
+    problem: a Problem, or the name of its file. rows: as of check(); of strokes and two arms the
+    times of a motion are left aside. speed: m/s of the tool; without it those of the problem's
+    strokes and limits hold. turn_speed: rad/s. rate: samples a second. chord: m, of one path.
+    refine: refine the rows of two arms first. timeout: s, or None. plan() with a speed plans rows
+    that are sure to keep what motions keep.
+
+    Returns a Motion of one path, a JobMotion of strokes, a WorkcellMotion of two arms. Raises
+    InputError, InvalidArgument and TimeoutError.
     """
-    return _planner(problem).time(
-        trajectory, speed=speed, turn_speed=turn_speed, rate=rate, chord=chord, timeout=timeout
+    problem = _loaded(problem)
+    shared = dict(speed=speed, turn_speed=turn_speed, rate=rate, timeout=timeout)
+    _refuse(problem, ("one path",), chord=chord)
+    _refuse(problem, ("two arms",), refine=refine)
+    if problem._kind() == "strokes":
+        return _swivel._time_strokes(problem, rows, **shared)
+    if problem._kind() == "two arms":
+        return _swivel._time_two_arms(problem, rows, refine=refine, **shared)
+    return Planner(problem).time(  # noqa: F405
+        _rows_of_path(problem, rows), chord=chord, **shared
     )
 
 
-def advise(problem: Problem | _File, plan: Plan, *, timeout: float = 1.0) -> list[Advice]:
-    """Finds changes that would help a problem that has no path, as Planner.advise() does.
+def advise(
+    problem: Problem | _File, plan: Plan | WorkcellPlan, *, timeout: float = 1.0
+) -> Any:
+    """Finds changes that would help a problem that has no answer, each planned alone.
 
-    problem: a Problem, or the name of its file. plan: its Plan. timeout: s.
+    problem: a Problem of one path or two arms, or the name of its file. plan: what plan() returned.
+    timeout: s, for all of them.
+
+    Returns a list of Advice of one path, what helps first; an AdviceOnWorkcell of two arms.
     """
-    return _planner(problem).advise(plan, timeout=timeout)
+    problem = _loaded(problem)
+    _refuse(problem, ("one path", "two arms"), advise=problem)
+    if problem._kind() == "two arms":
+        return _swivel._advise_two_arms(problem, plan, timeout)
+    return Planner(problem).advise(plan, timeout=timeout)  # noqa: F405
 
 
 def compute_cartesian_path(

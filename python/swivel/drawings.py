@@ -12,6 +12,7 @@ import tempfile
 import webbrowser
 
 from . import _swivel
+from .runs import _loaded
 
 # Bytes of a compressed page that is put into a notebook; a larger one is only named.
 _MOST_IN_A_NOTEBOOK = 4_000_000
@@ -25,8 +26,9 @@ _OPEN = (
 )
 
 
-def _loaded(problem, load=_swivel.load_problem):
-    return load(problem) if isinstance(problem, (str, os.PathLike)) else problem
+def _given(problem):
+    """Returns the Problem that is given, or that the file has; None for None."""
+    return None if problem is None else _loaded(problem)
 
 
 def _written(text, file):
@@ -37,13 +39,13 @@ def _written(text, file):
 
 
 def report(
-    problem: Problem | Job | Workcell | _File | None, plan: Plan | JobPlan | WorkcellPlan,
+    problem: Problem | _File | None, plan: Plan | JobPlan | WorkcellPlan,
     file: _File | None = None
 ) -> str | Any:
     """Makes the page of a plan: what `swivel plan --report` writes, one HTML file.
 
-    problem: the Problem, Job or Workcell that was planned, or the name of its file; None for the
-    one that the plan keeps, which it does until it is pickled. plan: Plan, JobPlan or WorkcellPlan.
+    problem: the Problem that was planned, or the name of its file; None for the one that the plan
+    keeps, which it does until it is pickled. plan: Plan, JobPlan or WorkcellPlan.
     file: where the page is written.
 
     Returns the page as text, or None where it was written. The problem is planned again, which
@@ -52,10 +54,10 @@ def report(
     package was built without pages.
     """
     if isinstance(plan, _swivel.JobPlan):
-        return _written(_swivel._draw_job(plan, _loaded(problem, _swivel.load_job)), file)
+        return _written(_swivel._draw_job(plan, _given(problem)), file)
     if isinstance(plan, _swivel.WorkcellPlan):
-        return _written(_swivel._draw_workcell(plan, _loaded(problem, _swivel.load_workcell)), file)
-    return _written(_swivel._draw(plan, _loaded(problem), True, False)[1], file)
+        return _written(_swivel._draw_workcell(plan, _given(problem)), file)
+    return _written(_swivel._draw(plan, _given(problem), True, False)[1], file)
 
 
 def map_svg(
@@ -68,38 +70,57 @@ def map_svg(
 
     Returns the SVG as text, or None where it was written. Raises as report() does.
     """
-    return _written(_swivel._draw(plan, _loaded(problem), False, full)[0], file)
+    return _written(_swivel._draw(plan, _given(problem), False, full)[0], file)
 
 
 def certificate(
     problem: Problem | _File, *, planner: _PlannerKind = "parallel", threads: int = 0,
     timeout: float | None = None
-) -> Certificate | None:
-    """Proves that a problem has no path, as `swivel plan --certificate` does.
+) -> Certificate | WorkcellCertificate | None:
+    """Proves that a problem has no answer, as `swivel plan --certificate` does.
 
     problem: a Problem, or the name of its file. The others are those of Planner.plan().
 
-    Returns a Certificate; None where the problem has a path. Raises TimeoutError.
+    Returns a Certificate of one path or of a stroke, a WorkcellCertificate of two arms; None where
+    the problem has an answer. Raises ValueError where strokes have no answer though each has a path
+    by itself, and TimeoutError.
     """
-    return _swivel._certificate(_loaded(problem), planner, threads, timeout)
+    problem = _loaded(problem)
+    if problem._kind() == "one path":
+        return _swivel._certificate(problem, planner, threads, timeout)
+    plan = _swivel._plan_strokes if problem._kind() == "strokes" else _swivel._plan_two_arms
+    answer = plan(problem, planner=planner, threads=threads, timeout=timeout)
+    return None if answer.solved else answer.certificate(timeout=timeout)
+
+
+def load_certificate(file: _File) -> Certificate | WorkcellCertificate:
+    """Loads what `plan --certificate` or save() wrote. Raises InputError."""
+    try:
+        of_two_arms = b'"swivel certificate of a workcell' in pathlib.Path(file).read_bytes()
+    except OSError:
+        of_two_arms = False  # what reads it says what is wrong
+    load = _swivel._load_workcell_certificate if of_two_arms else _swivel._load_certificate
+    return load(file)
 
 
 def check_certificate(
-    problem: Problem | Job | _File, certificate: Certificate | _File, *,
+    problem: Problem | _File, certificate: Certificate | WorkcellCertificate | _File, *,
     timeout: float | None = None
-) -> CertificateCheck:
+) -> CertificateCheck | WorkcellCertificateCheck:
     """Verifies a certificate from the problem alone, as `swivel check --certificate` does.
 
-    problem: a Problem, or the Job of the stroke that the certificate is of, or the name of its
-    file. certificate: a Certificate, or the name of its file. timeout: s, or None.
+    problem: a Problem, with the stroke that the certificate is of if it is of one, or the name of
+    its file. certificate: a Certificate, a WorkcellCertificate of two arms, or the name of a file
+    of either. timeout: s, or None.
 
-    Returns a CertificateCheck. Raises InputError for the certificate of another problem, and
-    TimeoutError.
+    Returns a CertificateCheck; of two arms a WorkcellCertificateCheck. Raises InputError for the
+    certificate of another problem, and TimeoutError.
     """
     if isinstance(certificate, (str, os.PathLike)):
-        certificate = _swivel.load_certificate(certificate)
-    load = _swivel.load_job if certificate.stroke else _swivel.load_problem
-    return _swivel._check_certificate(_loaded(problem, load), certificate, timeout)
+        certificate = load_certificate(certificate)
+    of_two_arms = isinstance(certificate, _swivel.WorkcellCertificate)
+    verify = _swivel._check_workcell_certificate if of_two_arms else _swivel._check_certificate
+    return verify(_loaded(problem), certificate, timeout)
 
 
 class _Frame:
@@ -174,34 +195,32 @@ def _plan_html(self):
 
 
 def _workcell_certificate(
-    self, workcell: Workcell | _File | None = None, *, timeout: float | None = None
+    self, workcell: Problem | _File | None = None, *, timeout: float | None = None
 ) -> WorkcellCertificate:
     """Proves that the workcell has no plan, as `swivel plan WORKCELL --certificate` does.
 
-    workcell: the Workcell that was planned, or the name of its file; None for the one that the plan
+    workcell: the Problem that was planned, or the name of its file; None for the one that the plan
     keeps until it is pickled. timeout: s, or None.
 
     Returns a WorkcellCertificate. The proof comes from a search of its own. Raises ValueError for
     plans that are not infeasible, or were made with refine or speed, and TimeoutError.
     """
-    return _swivel._workcell_certificate(
-        self, _loaded(workcell, _swivel.load_workcell), timeout
-    )
+    return _swivel._workcell_certificate(self, _given(workcell), timeout)
 
 
 def _job_certificate(
-    self, job: Job | _File | None = None, *, timeout: float | None = None
+    self, job: Problem | _File | None = None, *, timeout: float | None = None
 ) -> Certificate:
     """Proves that a stroke has no path by itself, as `swivel plan JOB --certificate` does.
 
-    job: the Job that was planned, or the name of its file; None for the one that the plan keeps
+    job: the Problem that was planned, or the name of its file; None for the one that the plan keeps
     until it is pickled. timeout: s, or None.
 
     Returns a Certificate, of the first such stroke; check_certificate() verifies it. The job is
     planned again. Raises ValueError for plans in which each stroke has a path by itself and for
     those with a motion, and TimeoutError.
     """
-    return _swivel._job_certificate(self, _loaded(job, _swivel.load_job), timeout)
+    return _swivel._job_certificate(self, _given(job), timeout)
 
 
 def extend():

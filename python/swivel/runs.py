@@ -16,7 +16,7 @@ from . import _swivel
 
 
 def place(
-    problem: Problem | Job | Workcell | _File,
+    problem: Problem | _File,
     *,
     object: str | None = None,
     path: bool = False,
@@ -44,7 +44,7 @@ def place(
 
     Does what `swivel place` does.
 
-    problem: a Problem, a Job, a Workcell, or the name of a file of one. object (a name of the
+    problem: a Problem, or the name of its file. object (a name of the
     scene), path, base: what is moved; exactly one of the three; with path, the paths of all strokes
     of a job, or of both arms of a workcell. arm: the arm of a workcell whose path alone is moved.
     x, y, z (m), roll, pitch, yaw (rad): by how much it is moved, in the base frame, where turns are
@@ -65,8 +65,7 @@ def place(
     Returns Placements in the order of their numbers; the rows are the same at any number of
     threads, workers and batches. Clearances, margins and speeds of a job's rows are those of its
     strokes, those of a workcell's the least of both arms. Rows have no trajectories:
-    plan(problem.placed(row.offset, base=True, hold=row.hold)), or plan_job() of a job or
-    plan_workcell() of a workcell placed so, has that of a row. Raises InvalidArgument, InputError
+    plan(problem.placed(row.offset, base=True, hold=row.hold)) has that of a row. Raises InvalidArgument, InputError
     and TypeError; Ctrl-C raises KeyboardInterrupt, whose attribute `rows` is the Placements known
     so far.
     """
@@ -126,7 +125,7 @@ def place(
 
 
 def campaign(
-    problem: Problem | Job | Workcell | _File,
+    problem: Problem | _File,
     *,
     episodes: int = 100,
     seed: int = 1,
@@ -140,8 +139,8 @@ def campaign(
 
     Does what `swivel campaign` does.
 
-    problem: a Problem, a Job, a Workcell, or the name of a file of one. episodes: how many. seed:
-    of the random poses; Problem.episode(seed, k), as of jobs and workcells, is the k-th episode.
+    problem: a Problem, or the name of its file. episodes: how many. seed:
+    of the random poses; Problem.episode(seed, k), is the k-th episode.
     planner: a PlannerKind or its name. threads: 0 for all cores. prove: prove each answer before
     its row is told. progress(episodes, done, of): called with new rows, the number of rows so far,
     and the number of all rows. client: a dask.distributed.Client, as for place().
@@ -187,14 +186,11 @@ def _known_rows(table, parts):
 
 
 def _loaded(problem):
-    """Returns the Problem, Job or Workcell that is given, or that the file has."""
+    """Returns the Problem that is given, or that the file has."""
     if isinstance(problem, (str, os.PathLike)):
-        return _swivel._load_problem_file(problem)
-    if not isinstance(problem, (_swivel.Problem, _swivel.Job, _swivel.Workcell)):
-        raise TypeError(
-            f"problem: {type(problem).__name__}: allowed are a Problem, a Job, a Workcell, or a "
-            "file of one"
-        )
+        return _swivel.load(problem)
+    if not isinstance(problem, _swivel.Problem):
+        raise TypeError(f"problem: {type(problem).__name__}: allowed are a Problem, or its file")
     return problem
 
 

@@ -27,7 +27,7 @@ PROBLEM = Path(os.environ["SWIVEL_DATA"]) / "problems/experiment_c.yaml"
 
 
 def quick():
-    problem = swivel.load_problem(PROBLEM)
+    problem = swivel.load(PROBLEM)
     problem.resolution = swivel.Resolution(ds=0.02, dphi=0.2)
     return problem
 
@@ -104,7 +104,7 @@ class Cluster(unittest.TestCase):
         self.assertEqual(sorted(used.values()), [True, True])
 
     def test_rows_of_jobs_are_those_of_one_process(self):
-        job = swivel.load_job(PROBLEM.with_name("door_job.yaml"))
+        job = swivel.load(PROBLEM.with_name("door_job.yaml"))
         job.resolution = swivel.Resolution(ds=0.02, dphi=0.1)
         grid = {"base": True, "x": (-0.1, 0.1, 0.1), "y": (0, 0.1, 0.1)}
         there, here = swivel.place(job, client=self.client, **grid), swivel.place(job, **grid)
@@ -152,7 +152,7 @@ class Cluster(unittest.TestCase):
         print(f"killed after {came[2]} of 200 episodes")
 
     def test_problems_and_answers_travel(self):
-        problem = swivel.load_problem(PROBLEM)
+        problem = swivel.load(PROBLEM)
         plans = self.client.map(swivel.plan, [problem, str(PROBLEM)], planner="lazy", pure=False)
         here = swivel.plan(problem, planner="lazy")
         for plan in self.client.gather(plans):

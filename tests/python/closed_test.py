@@ -33,7 +33,7 @@ def gap(joints):
 class ClosedPaths(unittest.TestCase):
     def test_a_closed_path_ends_where_it_begins(self):
         for closed, opened in (
-            (swivel.load_problem(COVER), swivel.load_problem(COVER)),
+            (swivel.load(COVER), swivel.load(COVER)),
             (square(closed=True), square()),
         ):
             opened.closed = False
@@ -54,7 +54,7 @@ class ClosedPaths(unittest.TestCase):
                 self.assertIn("the path is closed", check.failures[0])
 
     def test_ten_laps_repeat(self):
-        problem = swivel.load_problem(COVER)
+        problem = swivel.load(COVER)
         first = swivel.plan(problem)
         joints = first.joints
         for _ in range(10):
@@ -73,24 +73,24 @@ class ClosedPaths(unittest.TestCase):
         self.assertTrue(swivel.check(COVER, plan.motion).passed)
 
     def test_strokes_of_a_job_close(self):
-        job = swivel.load_job(COVERS)
+        job = swivel.load(COVERS)
         self.assertEqual([stroke.closed for stroke in job.strokes], [True, True])
         self.assertIn("closed", repr(job.strokes[0]))
-        plan = swivel.plan_job(job)
+        plan = swivel.plan(job)
         laps = [part.trajectory for part in plan.parts if part.stroke]
         self.assertEqual(len(laps), 2)
         for lap in laps:
             self.assertLess(gap(lap.joints), 1e-9)
-        self.assertTrue(swivel.check_job(job, plan.parts).passed)
+        self.assertTrue(swivel.check(job, plan.parts).passed)
         again = pickle.loads(pickle.dumps(job))
         self.assertEqual(list(again.strokes), list(job.strokes))
         opened = pickle.loads(pickle.dumps(job))
         for stroke in opened.strokes:
             stroke.closed = False
         self.assertNotEqual(list(opened.strokes), list(job.strokes))
-        drifting = swivel.plan_job(opened)
+        drifting = swivel.plan(opened)
         self.assertLess(drifting.cost, plan.cost)
-        check = swivel.check_job(job, drifting.parts)
+        check = swivel.check(job, drifting.parts)
         self.assertFalse(check.passed)
         self.assertIn("the path is closed", check.failures[0])
         lap = job.strokes[0]
@@ -98,7 +98,7 @@ class ClosedPaths(unittest.TestCase):
         self.assertEqual(made, lap)
         job.retract = 0.01
         with self.assertRaisesRegex(ValueError, "'left': closed"):
-            swivel.plan_job(job)
+            swivel.plan(job)
 
     def test_certificates(self):
         near = square(closed=True)
@@ -109,7 +109,7 @@ class ClosedPaths(unittest.TestCase):
         self.assertTrue(swivel.check_certificate(far, proof).passed)
 
     def test_pickled(self):
-        for problem in (swivel.load_problem(COVER), square(closed=True)):
+        for problem in (swivel.load(COVER), square(closed=True)):
             for protocol in (2, pickle.HIGHEST_PROTOCOL):
                 again = pickle.loads(pickle.dumps(problem, protocol))
                 self.assertTrue(again.closed)
@@ -130,7 +130,7 @@ class ClosedPaths(unittest.TestCase):
 
     def test_a_path_that_cannot_close(self):
         """A turntable without limits follows the torch once round; its arm must unwind."""
-        problem = swivel.load_problem(DATA / "problems" / "kr6_turntable_pipe.yaml")
+        problem = swivel.load(DATA / "problems" / "kr6_turntable_pipe.yaml")
         problem.resolution.ds, problem.resolution.arc = 0.01, 0.6
         self.assertTrue(swivel.plan(problem).solved)
         problem.closed = True

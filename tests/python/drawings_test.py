@@ -61,7 +61,7 @@ class Drawings(unittest.TestCase):
                 if PAGES:
                     words += ["--report", Path(folder) / "page.html"]
                 program("plan", PROBLEMS / f"{name}.yaml", *options, *words, codes=(0, 1))
-                problem = swivel.load_problem(PROBLEMS / f"{name}.yaml")
+                problem = swivel.load(PROBLEMS / f"{name}.yaml")
                 plan = swivel.plan(problem, threads=1, **keywords)
                 self.assertEqual(plan.map_svg(), drawn.read_text())
                 self.assertEqual(swivel.map_svg(problem, plan), drawn.read_text())
@@ -94,7 +94,7 @@ class Drawings(unittest.TestCase):
             self.compare(plan.report(), (folder / "page.html").read_text())
             self.assertEqual([body["name"] for body in data_of(folder / "page.html")["visual"]],
                              ["link_2"])
-            problem = pickle.loads(pickle.dumps(swivel.load_problem(file)))
+            problem = pickle.loads(pickle.dumps(swivel.load(file)))
             self.compare(swivel.report(problem, plan), plan.report())
 
     def compare(self, page, other):
@@ -102,9 +102,9 @@ class Drawings(unittest.TestCase):
         self.assertTrue(without_times(page) == without_times(other), "another page")
 
     def test_what_cannot_be_drawn_is_refused(self):
-        problem = swivel.load_problem(PROBLEMS / "experiment_c.yaml")
+        problem = swivel.load(PROBLEMS / "experiment_c.yaml")
         plan = swivel.plan(problem)
-        other = swivel.load_problem(PROBLEMS / "experiment_c.yaml")
+        other = swivel.load(PROBLEMS / "experiment_c.yaml")
         other.scene.remove("post")
         other.resolution.ds = 0.02
         own = swivel.plan(problem, cost=lambda joints: joints[:, 0] ** 2)
@@ -201,7 +201,7 @@ class Certificates(unittest.TestCase):
 
     def test_a_false_certificate_fails(self):
         file = PROBLEMS / "experiment_a_start.yaml"
-        problem = swivel.load_problem(file)
+        problem = swivel.load(file)
         certificate = swivel.certificate(problem)
         problem.start = None
         self.assertTrue(swivel.plan(problem).solved)
@@ -248,7 +248,7 @@ class JobDrawings(unittest.TestCase):
             file = self.job(*strokes)
             words = ["--threads", "1", "--quiet", "--report", page, *options]
             program("plan", file, *words, codes=(0, 1))
-            plan = swivel.plan_job(file, threads=1, **keywords)
+            plan = swivel.plan(file, threads=1, **keywords)
             self.assertEqual(plan.solved, not strokes)
             self.assertIsNone(plan.report(own))
             texts = [without_times(text.read_text()) for text in (own, page)]
@@ -269,7 +269,7 @@ class JobDrawings(unittest.TestCase):
     def test_certificates_are_those_of_the_program(self):
         file, theirs, own = self.job(self.FAR), self.folder / "theirs", self.folder / "own"
         program("plan", file, "--certificate", theirs, "--quiet", codes=(1, ))
-        plan = swivel.plan_job(file)
+        plan = swivel.plan(file)
         certificate = plan.certificate()
         certificate.save(own)
         self.assertEqual(own.read_bytes(), theirs.read_bytes())
@@ -277,7 +277,7 @@ class JobDrawings(unittest.TestCase):
         self.assertIn("stroke 'far', no path", repr(certificate))
         self.assertEqual(pickle.loads(pickle.dumps(certificate)), certificate)
         self.assertIn("passed", program("check", file, "--certificate", own).stdout)
-        job = swivel.load_job(file)
+        job = swivel.load(file)
         for of, what in ((job, certificate), (file, own)):
             self.assertTrue(swivel.check_certificate(of, what))
         again = pickle.loads(pickle.dumps(plan))
@@ -293,12 +293,12 @@ class JobDrawings(unittest.TestCase):
             swivel.check_certificate(job, certificate)
         with self.assertRaisesRegex(swivel.InputError, "is of stroke 'far' of a job"):
             swivel.check_certificate(
-                swivel.load_problem(PROBLEMS / "experiment_c.yaml"), certificate
+                swivel.load(PROBLEMS / "experiment_c.yaml"), certificate
             )
         with self.assertRaisesRegex(ValueError, "no stroke is known to have no path"):
-            swivel.plan_job(self.job()).certificate()
+            swivel.plan(self.job()).certificate()
         with self.assertRaisesRegex(ValueError, "without speed"):
-            swivel.plan_job(file, speed=0.1).certificate()
+            swivel.plan(file, speed=0.1).certificate()
         with self.assertRaises(TimeoutError):
             plan.certificate(timeout=1e-6)
 

@@ -31,7 +31,7 @@ def program(*arguments):
 
 def small(**members):
     """Two strokes on the door, from a home and back, with lines of approach and retract."""
-    job = swivel.load_job(DOOR)
+    job = swivel.load(DOOR)
     job.strokes = job.strokes[:2]
     job.resolution = COARSE
     job.approach, job.retract = 0.02, [0, 0, -0.03]
@@ -70,11 +70,11 @@ class Jobs(unittest.TestCase):
             rows, motion, out = (Path(folder) / f"{name}.csv" for name in ("rows", "motion", "out"))
             told = json.loads(program("plan", DOOR, "--out", rows, "--json", "-"))
             program("plan", DOOR, "--rate", "50", "--out", motion)
-            plan = swivel.plan_job(DOOR, evidence=True)
+            plan = swivel.plan(DOOR, evidence=True)
             self.assertEqual(plan.to_csv(), rows.read_text())
             plan.save(out)
             self.assertEqual(out.read_bytes(), rows.read_bytes())
-            timed = swivel.plan_job(swivel.load_job(DOOR), rate=50, planner="lazy")
+            timed = swivel.plan(swivel.load(DOOR), rate=50, planner="lazy")
             timed.motion.save(out)
             self.assertEqual(out.read_bytes(), motion.read_bytes())
         for name in ("cost", "bound", "bound_any", "gap", "transition_counters", "joint_names"):
@@ -96,7 +96,7 @@ class Jobs(unittest.TestCase):
             self.assertEqual(mine[name], told[name], name)
 
     def test_made_in_python(self):
-        read = swivel.load_job(DOOR)
+        read = swivel.load(DOOR)
         robot = swivel.Robot(
             DATA / "robots" / "sda5f.urdf", DATA / "robots" / "sda5f.srdf", base="base_link",
             tip="arm_left_link_tool0", tool=swivel.pose([0, 0, 0.10]), hold={"torso_joint_b1": 0.0}
@@ -114,7 +114,7 @@ class Jobs(unittest.TestCase):
             )
             for k, file in enumerate(files)
         ]
-        job = swivel.Job(
+        job = swivel.Problem(
             robot, strokes, read.scene, home=HOME, process_speed=0.05, rapid=0.5,
             limits=swivel.Limits(clearance=0.005, tool_path_error=0.001)
         )
@@ -122,7 +122,7 @@ class Jobs(unittest.TestCase):
                      "process_speed", "approach_speed"):
             self.assertEqual(getattr(job, name), getattr(read, name), name)
         np.testing.assert_array_equal(job.home, read.home)
-        one, other = swivel.plan_job(job), swivel.plan_job(read)
+        one, other = swivel.plan(job), swivel.plan(read)
         self.assertTrue(one.solved)
         self.assertEqual((one.cost, one.to_csv()), (other.cost, other.to_csv()))
 
@@ -131,7 +131,7 @@ class Jobs(unittest.TestCase):
         own, plain = job.strokes
         own.limits = swivel.Limits(clearance=0.009)
         own.approach, own.retract, own.resolution = 0, 0, swivel.Resolution(ds=0.05, dphi=0.2)
-        plan = swivel.plan_job(job, evidence=True)
+        plan = swivel.plan(job, evidence=True)
         self.assertTrue(plan.solved, plan)
         first, second = (run.measures.min_margin.required for run in plan.runs)
         self.assertEqual((first, second), (0.009, 0.005))
@@ -144,24 +144,24 @@ class Jobs(unittest.TestCase):
         self.assertAlmostEqual(heights[0], 0.02)
         along = np.linalg.norm(np.diff(plain.waypoints[:, :3], axis=0), axis=1).sum()
         self.assertAlmostEqual(heights[1], 0.02 + along + 0.03)
-        self.assertTrue(swivel.check_job(job, plan))
+        self.assertTrue(swivel.check(job, plan))
 
     def test_a_stroke_ends_where_it_is_told(self):
         job, told = small(), small()
         job.resolution = swivel.Resolution(ds=0.05, dphi=0.13)
-        end = swivel.plan_job(job).parts[1].joints[-1]
+        end = swivel.plan(job).parts[1].joints[-1]
         told.strokes[0].end = end
-        plan = swivel.plan_job(told)
+        plan = swivel.plan(told)
         self.assertTrue(plan.solved, plan)
         np.testing.assert_allclose(plan.parts[1].joints[-1], end, rtol=0, atol=1e-9)
-        self.assertTrue(swivel.check_job(told, plan))
+        self.assertTrue(swivel.check(told, plan))
         self.assertEqual(pickle.loads(pickle.dumps(told)).strokes[0], told.strokes[0])
         np.testing.assert_array_equal(told.strokes[0].end, end)
         told.strokes[0].end = end + 1e-5
-        self.assertFalse(swivel.check_job(told, plan))
+        self.assertFalse(swivel.check(told, plan))
         told.strokes[0].reversible = True
         with self.assertRaisesRegex(ValueError, "end: allowed in strokes that are not reversible"):
-            swivel.plan_job(told)
+            swivel.plan(told)
 
     def test_files_are_read_whole(self):
         text = DOOR.read_text().replace("../", f"{DATA}/")
@@ -171,10 +171,10 @@ class Jobs(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "job.yaml"
             file.write_text(text)
-            job = swivel.load_job(file)
+            job = swivel.load(file)
             self.assertEqual(job.source, str(file))
-            plan = swivel.plan_job(job)
-            self.assertEqual(plan.to_csv(), swivel.plan_job(file).to_csv())
+            plan = swivel.plan(job)
+            self.assertEqual(plan.to_csv(), swivel.plan(file).to_csv())
         self.assertTrue(plan.solved)
         own, plain = job.strokes[1], job.strokes[2]
         self.assertEqual((own.limits.clearance, plain.limits), (0.008, None))
@@ -183,22 +183,22 @@ class Jobs(unittest.TestCase):
         self.assertEqual((own.resolution, own.retract), (None, None))
 
     def test_either_way(self):
-        job = swivel.load_job(DATA / "problems" / "iiwa14_bench_job.yaml")
+        job = swivel.load(DATA / "problems" / "iiwa14_bench_job.yaml")
         np.testing.assert_array_equal(job.approach, [0, 0, -0.05])
         self.assertEqual(job.strokes[0].approach, None)
         job.order, job.resolution = "best", COARSE
-        plan = swivel.plan_job(job, rate=50)
+        plan = swivel.plan(job, rate=50)
         self.assertTrue(plan.solved)
         order = [(run.stroke, run.reversed) for run in plan.runs]
         self.assertEqual({name for name, _ in order}, {stroke.name for stroke in job.strokes})
-        backwards = swivel.Job(
+        backwards = swivel.Problem(
             job.robot, [copy.copy(job.strokes[0])], job.scene, limits=job.limits, resolution=COARSE,
             approach=0.05, retract=0.05, process_speed=0.05
         )
         backwards.strokes[0].waypoints = backwards.strokes[0].waypoints[::-1]
-        rows = swivel.plan_job(backwards).parts[0].trajectory
+        rows = swivel.plan(backwards).parts[0].trajectory
         for reversed, words in ((True, ""), (False, "row 0")):
-            check = swivel.check_job(
+            check = swivel.check(
                 with_strokes(job, job.strokes[:1]),
                 [swivel.JobPart(rows, job.strokes[0].name, reversed=reversed)],
             )
@@ -207,8 +207,8 @@ class Jobs(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             for name, what in (("rows", plan), ("motion", plan.motion)):
                 what.save(Path(folder) / f"{name}.csv")
-                self.assertTrue(swivel.check_job(job, Path(folder) / f"{name}.csv"), name)
-            read = swivel.load_job_trajectory(Path(folder) / "rows.csv", job)
+                self.assertTrue(swivel.check(job, Path(folder) / f"{name}.csv"), name)
+            read = swivel.load_trajectory(Path(folder) / "rows.csv", problem=job)
         self.assertEqual([(p.stroke, p.reversed) for p in read if p.stroke], order)
         print(order)
 
@@ -234,15 +234,21 @@ class Jobs(unittest.TestCase):
         with self.assertRaisesRegex(swivel.InvalidArgument, "name 'row_0' is taken"):
             job.validate()
 
-    def test_a_problem_with_a_path_is_a_job_of_one_stroke(self):
+    def test_one_path_is_planned_as_a_stroke_of_its_own(self):
         for name in ("experiment_c", "ur5e_deburr_edge", "kr6_weld_pipe"):
             file = DATA / "problems" / f"{name}.yaml"
-            job = swivel.load_job(file)
+            path = swivel.load(file)
+            stroke = swivel.Stroke(
+                "path", path.waypoints, frame=path.frame, smooth=path.smooth, end=path.end
+            )
+            job = swivel.Problem(
+                path.robot, [stroke], path.scene, limits=path.limits, resolution=path.resolution,
+                cost=path.cost
+            )
             self.assertEqual([stroke.name for stroke in job.strokes], ["path"])
-            (part,) = swivel.plan_job(job).parts
-            np.testing.assert_array_equal(part.joints, swivel.plan_job(file).parts[0].joints)
-            if name == "experiment_c":
-                np.testing.assert_array_equal(part.joints, swivel.plan(file).joints)
+            (part,) = swivel.plan(job).parts
+            self.assertEqual(part.stroke, "path")
+            np.testing.assert_array_equal(part.joints, swivel.plan(file).joints)
 
 
 class JobMotions(unittest.TestCase):
@@ -250,7 +256,7 @@ class JobMotions(unittest.TestCase):
         self.job = small()
 
     def test_motion(self):
-        plan = swivel.plan_job(self.job, speed=0.1, rate=125)
+        plan = swivel.plan(self.job, speed=0.1, rate=125)
         motion = plan.motion
         self.assertTrue(motion.executable, motion)
         self.assertEqual(motion.joints.shape, (len(motion), 7))
@@ -271,78 +277,78 @@ class JobMotions(unittest.TestCase):
             for on, off in zip(motion.events[::2], motion.events[1::2])
         )
         self.assertEqual(motion.process.sum(), count)
-        self.assertTrue(swivel.check_job(self.job, motion, speed=0.1))
-        faster = swivel.check_job(self.job, motion)  # than the job's process_speed, 0.05
+        self.assertTrue(swivel.check(self.job, motion, speed=0.1))
+        faster = swivel.check(self.job, motion)  # than the job's process_speed, 0.05
         self.assertFalse(faster)
         self.assertRegex(faster.failures[0], r"^stroke 'row_0': rows \d+-\d+: the tool moves at 0.")
         with self.assertRaisesRegex(ValueError, "speed: not a positive number"):
-            swivel.check_job(self.job, motion, speed=0)
-        self.assertTrue(swivel.check_job(self.job, plan))  # whose rows follow rounded corners
+            swivel.check(self.job, motion, speed=0)
+        self.assertTrue(swivel.check(self.job, plan))  # whose rows follow rounded corners
         np.testing.assert_array_equal(motion.joints[0], np.array(HOME))
         with tempfile.TemporaryDirectory() as folder:
             for ending in ("csv", "json", "yaml", "mcap"):
                 motion.save(Path(folder) / f"m.{ending}")
                 self.assertGreater((Path(folder) / f"m.{ending}").stat().st_size, 1000)
-            read = swivel.load_job_trajectory(Path(folder) / "m.csv", self.job)
+            read = swivel.load_trajectory(Path(folder) / "m.csv", problem=self.job)
             for member in ("t", "joints", "velocities", "accelerations", "part", "process"):
                 np.testing.assert_array_equal(getattr(read, member), getattr(motion, member))
             self.assertEqual(
                 [(e.t, e.stroke, e.on) for e in read.events],
                 [(e.t, e.stroke, e.on) for e in motion.events],
             )
-            self.assertTrue(swivel.check_job(self.job, Path(folder) / "m.csv", speed=0.1))
-            again = swivel.time_job(self.job, Path(folder) / "m.csv", speed=0.1)
+            self.assertTrue(swivel.check(self.job, Path(folder) / "m.csv", speed=0.1))
+            again = swivel.time(self.job, Path(folder) / "m.csv", speed=0.1)
             for ending in ("json", "yaml", "mcap"):  # what they do not state is worked out
                 file = Path(folder) / f"m.{ending}"
-                other = swivel.load_job_trajectory(file, self.job)
+                other = swivel.load_trajectory(file, problem=self.job)
                 for member in ("t", "joints", "velocities", "part", "process"):
                     np.testing.assert_allclose(
                         getattr(other, member), getattr(motion, member), atol=1e-9
                     )
-                self.assertTrue(swivel.check_job(self.job, other, speed=0.1))
-                self.assertTrue(swivel.check_job(self.job, file, speed=0.1))
-                timed = swivel.time_job(self.job, file, speed=0.1)
+                self.assertTrue(swivel.check(self.job, other, speed=0.1))
+                self.assertTrue(swivel.check(self.job, file, speed=0.1))
+                timed = swivel.time(self.job, file, speed=0.1)
                 np.testing.assert_allclose(timed.joints, again.joints, atol=1e-6)
             with self.assertRaisesRegex(swivel.InputError, "unknown format"):
                 motion.save(Path(folder) / "m.txt")
         # A job with its strokes in another list is another order.
         turned = small(strokes=self.job.strokes[::-1])
-        self.assertIn("given order", swivel.check_job(turned, motion).failures[0])
+        self.assertIn("given order", swivel.check(turned, motion).failures[0])
         turned.order = "best"
-        self.assertTrue(swivel.check_job(turned, motion, speed=0.1))
+        self.assertTrue(swivel.check(turned, motion, speed=0.1))
 
-    def test_time_job(self):
-        plan = swivel.plan_job(self.job)
+    def test_time(self):
+        plan = swivel.plan(self.job)
         self.assertIsNone(plan.motion)
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "rows.csv"
             plan.save(file)
             motions = [
-                swivel.time_job(self.job, rows, rate=50)
+                swivel.time(self.job, rows, rate=50)
                 for rows in (plan, plan.parts, file)
             ]
         for motion in motions:
             if motion.executable:
-                self.assertTrue(swivel.check_job(self.job, motion))
+                self.assertTrue(swivel.check(self.job, motion))
             else:  # since motions keep more clearance than rows do
                 self.assertIn("come", motion.reason)
             self.assertEqual(repr(motion), repr(motions[0]))
         print(motions[0])
-        timed = swivel.plan_job(self.job, speed=0.1)
-        slower = swivel.time_job(self.job, timed, speed=0.05)
-        self.assertTrue(swivel.check_job(self.job, slower))
+        timed = swivel.plan(self.job, speed=0.1)
+        slower = swivel.time(self.job, timed, speed=0.05)
+        self.assertTrue(swivel.check(self.job, slower))
         self.assertGreater(slower.duration, timed.motion.duration)
         with self.assertRaises(TimeoutError):
-            swivel.time_job(self.job, plan, speed=0.1, timeout=1e-6)
+            swivel.time(self.job, plan, speed=0.1, timeout=1e-6)
         bad = [plan.parts[0], spoilt(plan.parts[1], 3), *plan.parts[2:]]
-        with self.assertRaisesRegex(swivel.InputError, r"row 3.*a job that passes check_job\(\)$"):
-            swivel.time_job(self.job, bad, speed=0.1)
+        with self.assertRaisesRegex(swivel.InputError, r"row 3.*a job that passes check\(\)$"):
+            swivel.time(self.job, bad, speed=0.1)
 
     def test_not_executable(self):
         # The cheapest job of this episode jumps from branch to branch at a singularity.
-        job = swivel.load_job(DOOR)
-        job.scene = swivel.load_problem(DATA / "problems" / "experiment_c.yaml").episode(1, 3).scene
-        motion = swivel.time_job(job, swivel.plan_job(job), rate=50)
+        job = swivel.load(DOOR)
+        job.scene = swivel.load(DATA / "problems" / "experiment_c.yaml").episode(1, 3).scene
+        motion = swivel.time(job, swivel.plan(job), rate=50)
         self.assertFalse(motion.executable)
         self.assertRegex(motion.reason, "stroke 'row_5': the solution changes from branch")
         self.assertEqual((motion.at_part, len(motion)), (11, 0))
@@ -355,30 +361,30 @@ class JobChecks(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.job = small()
-        cls.plan = swivel.plan_job(cls.job)
+        cls.plan = swivel.plan(cls.job)
 
     def test_spoilt_rows(self):
         parts = self.plan.parts
-        check = swivel.check_job(self.job, parts)
+        check = swivel.check(self.job, parts)
         self.assertTrue(check.passed, check)
         self.assertEqual(len(check.runs), 2)
         self.assertAlmostEqual(check.cost, self.plan.cost, places=9)
         self.assertLess(check.runs[0].worst_position, 1e-6)
-        check = swivel.check_job(self.job, [spoilt(parts[0], 0), *parts[1:]])
+        check = swivel.check(self.job, [spoilt(parts[0], 0), *parts[1:]])
         self.assertIn("transition to 'row_0': begins", check.failures[0])
-        check = swivel.check_job(self.job, [parts[0], spoilt(parts[1], 3), *parts[2:]])
+        check = swivel.check(self.job, [parts[0], spoilt(parts[1], 3), *parts[2:]])
         self.assertFalse(check)
         self.assertIn("stroke 'row_0': row 3", check.failures[0])
         self.assertIn("failed", repr(check))
-        self.assertIn("parts: allowed are", swivel.check_job(self.job, parts[1:]).failures[0])
-        self.assertFalse(swivel.check_job(self.job, []))
+        self.assertIn("parts: allowed are", swivel.check(self.job, parts[1:]).failures[0])
+        self.assertFalse(swivel.check(self.job, []))
 
     def test_files(self):
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "rows.csv"
             self.plan.save(file)
-            self.assertTrue(swivel.check_job(self.job, file))
-            read = swivel.load_job_trajectory(file, self.job)
+            self.assertTrue(swivel.check(self.job, file))
+            read = swivel.load_trajectory(file, problem=self.job)
             for part, other in zip(read, self.plan.parts):
                 self.assertEqual((part.stroke, part.reversed), (other.stroke, other.reversed))
                 np.testing.assert_array_equal(part.joints, other.joints)
@@ -387,11 +393,11 @@ class JobChecks(unittest.TestCase):
             row = next(k for k, line in enumerate(lines) if line.endswith(",row_0,1"))
             lines[row] = lines[row][:-1] + "0"
             file.write_text("\n".join(lines) + "\n")
-            check = swivel.check_job(self.job, file)
+            check = swivel.check(self.job, file)
             self.assertIn(": process is 0: allowed is 1", check.failures[0])
             self.job.strokes[0].name, before = "other", self.job.strokes[0].name
             with self.assertRaisesRegex(swivel.InputError, "rows.csv: .*'row_0' is no stroke"):
-                swivel.check_job(self.job, file)
+                swivel.check(self.job, file)
             self.job.strokes[0].name = before
 
     def test_parts_by_hand(self):
@@ -400,16 +406,16 @@ class JobChecks(unittest.TestCase):
             for part in self.plan.parts
         ]
         self.assertIsNone(made[0].process)
-        self.assertTrue(swivel.check_job(self.job, made))
+        self.assertTrue(swivel.check(self.job, made))
         with self.assertRaisesRegex(swivel.InvalidArgument, "'row_7' is no stroke.*nearest is"):
-            swivel.check_job(self.job, [swivel.JobPart(made[1].trajectory, "row_7")])
+            swivel.check(self.job, [swivel.JobPart(made[1].trajectory, "row_7")])
         with self.assertRaisesRegex(ValueError, "of a stroke allowed is a Trajectory"):
             swivel.JobPart(made[1].joints, "row_0")
 
 
 class JobAnswers(unittest.TestCase):
     def test_no_job(self):
-        plan = swivel.plan_job(barred())
+        plan = swivel.plan(barred())
         self.assertEqual(plan.status, "infeasible")
         self.assertEqual((plan.cost, plan.gap, plan.parts), (None, None, []))
         self.assertEqual(plan.runs[1].diagnosis.cause.kind, "reach")
@@ -420,16 +426,16 @@ class JobAnswers(unittest.TestCase):
         self.assertEqual(json.loads(plan.to_json())["status"], "infeasible")
         job = small()
         job.scene.add("wall", swivel.Sphere(0.2), job.tool_pose(job.home))
-        plan = swivel.plan_job(job)
+        plan = swivel.plan(job)
         self.assertEqual(plan.barred_where, "home", plan)
         self.assertIn("wall", plan.barred_by)
         self.assertRegex(repr(plan), "at home .*wall come nearer")
-        stopped = swivel.plan_job(DOOR, timeout=1e-3)
+        stopped = swivel.plan(DOOR, timeout=1e-3)
         self.assertEqual(stopped.status, "timeout")
 
     def test_words(self):
         job = small()
-        plan = swivel.plan_job(job, speed=0.1)
+        plan = swivel.plan(job, speed=0.1)
         for thing, words in (
             (job, "2 strokes"),
             (job.strokes[0], "Stroke 'row_0': .* waypoints in 'door'"),
@@ -439,13 +445,13 @@ class JobAnswers(unittest.TestCase):
             (plan.runs[0], "stroke 'row_0': solved, at least"),
             (plan.motion, "2 strokes, .* Hz"),
             (plan.motion.events[0], "on at t = .*'row_0'"),
-            (swivel.check_job(job, plan), "passed: 2 runs"),
+            (swivel.check(job, plan), "passed: 2 runs"),
         ):
             self.assertRegex(repr(thing), words)
             self.assertNotIn("\n", repr(thing))
 
     def test_ctrl_c_stops_a_plan(self):
-        job, calls = swivel.load_job(DOOR), []
+        job, calls = swivel.load(DOOR), []
         job.resolution = swivel.Resolution(ds=0.001, dphi=0.002)
 
         def progress(*_):
@@ -454,20 +460,20 @@ class JobAnswers(unittest.TestCase):
                 os.kill(os.getpid(), signal.SIGINT)
 
         with self.assertRaises(KeyboardInterrupt):
-            swivel.plan_job(job, progress=progress)
+            swivel.plan(job, progress=progress)
 
     def test_pickles(self):
         compare = python_test.Pickles("test_parts")
         compare.setUp()
         job = small()
-        plan = swivel.plan_job(job, speed=0.1, evidence=True)
-        for thing in (job, job.strokes[0], plan, plan.motion, swivel.check_job(job, plan),
-                      swivel.plan_job(barred()), swivel.StrokeOrder.BEST):
+        plan = swivel.plan(job, speed=0.1, evidence=True)
+        for thing in (job, job.strokes[0], plan, plan.motion, swivel.check(job, plan),
+                      swivel.plan(barred()), swivel.StrokeOrder.BEST):
             compare.through(thing)
         again = pickle.loads(pickle.dumps(plan))
         self.assertEqual(again.to_csv(), plan.to_csv())
         self.assertEqual(again.to_json(), plan.to_json())
-        self.assertTrue(swivel.check_job(pickle.loads(pickle.dumps(job)), again.motion, speed=0.1))
+        self.assertTrue(swivel.check(pickle.loads(pickle.dumps(job)), again.motion, speed=0.1))
         print(compare.count, "values compared")
         self.assertGreater(compare.count, 500)
         # An answer holds neither robot nor scene.
@@ -482,7 +488,7 @@ class JobStudies(unittest.TestCase):
 
     @staticmethod
     def job():
-        job = swivel.load_job(DOOR)
+        job = swivel.load(DOOR)
         job.resolution = swivel.Resolution(ds=0.02, dphi=0.1)
         return job
 
@@ -513,7 +519,7 @@ class JobStudies(unittest.TestCase):
         self.assertTrue(0 < rows.solved.sum() < 6)
         self.assertEqual(rows.episode.tolist(), list(range(6)))
         for k, row in enumerate(rows):
-            plan = swivel.plan_job(job.episode(2, k))
+            plan = swivel.plan(job.episode(2, k))
             self.assertEqual((plan.status, plan.cost), (row.status, row.cost))
             self.assertEqual(bool(row.reason), not row.solved)
 
@@ -533,7 +539,7 @@ class JobStudies(unittest.TestCase):
         rows = swivel.place(job, **self.GRID)
         self.assertTrue(0 < rows.solved.sum() < len(rows))
         for row in rows:
-            plan = swivel.plan_job(job.placed(row.offset, base=True), evidence=True)
+            plan = swivel.plan(job.placed(row.offset, base=True), evidence=True)
             self.assertEqual((plan.status, plan.cost), (row.status, row.cost))
             if row.solved:
                 self.assertEqual(
@@ -600,7 +606,7 @@ class JobStudies(unittest.TestCase):
 
     def test_refused(self):
         job = self.job()
-        still = swivel.Job(job.robot, job.strokes, job.scene)
+        still = swivel.Problem(job.robot, job.strokes, job.scene)
         for message, function, of, keywords in (
             ("exactly one", swivel.place, job, {"x": 0}),
             ("'poste'", swivel.place, job, {"object": "poste", "x": 0}),
@@ -620,7 +626,7 @@ class JobStudies(unittest.TestCase):
         for wrong in (None, 3, job.robot, [job]):
             for study in (lambda of: swivel.place(of, base=True, x=0), swivel.campaign):
                 with self.assertRaisesRegex(
-                    TypeError, "allowed are a Problem, a Job, a Workcell, or a file"
+                    TypeError, "allowed are a Problem, or its file"
                 ):
                     study(wrong)
 
@@ -630,7 +636,7 @@ RING = DATA / "problems" / "iiwa14_ring_job.yaml"
 
 def ring(**members):
     """A ring of one and a half turns, at a coarse resolution, in two runs."""
-    job = swivel.load_job(RING)
+    job = swivel.load(RING)
     job.resolution = swivel.Resolution(ds=0.02, dphi=0.2)
     job.limits.tool_path_error = 0.005
     for stroke in job.strokes:
@@ -644,7 +650,7 @@ class JobLiftOffs(unittest.TestCase):
     """Strokes that no single run finishes."""
 
     def test_the_program_gives_the_same_bits(self):
-        plan = swivel.plan_job(RING)
+        plan = swivel.plan(RING)
         self.assertEqual([part.stroke for part in plan.parts if part.stroke], ["ring/1", "ring/2"])
         with tempfile.TemporaryDirectory() as folder:
             own, other = Path(folder) / "own.csv", Path(folder) / "other.csv"
@@ -657,14 +663,14 @@ class JobLiftOffs(unittest.TestCase):
             self.assertIn("lift-off", repr(plan))
             self.assertIn("of 'ring': ends at s = ", repr(place))
             # Files are read with their runs, and prove the job.
-            parts = swivel.load_job_trajectory(own, RING)
+            parts = swivel.load_trajectory(own, problem=RING)
             self.assertEqual([part.begin for part in parts], [part.begin for part in plan.parts])
-            self.assertTrue(swivel.check_job(RING, own))
+            self.assertTrue(swivel.check(RING, own))
 
     def test_plans_are_checked_and_timed(self):
         job = ring()
         self.assertEqual((job.lift.cost, job.lift.overlap), (1, 0.01))
-        plan = swivel.plan_job(job)
+        plan = swivel.plan(job)
         self.assertEqual(len(plan.lift_offs), 1)
         (lift,) = plan.lift_offs
         self.assertLessEqual(lift.resumed, lift.end - 0.01 + 1e-9)
@@ -674,34 +680,34 @@ class JobLiftOffs(unittest.TestCase):
               for run in (first, second)]
         self.assertAlmostEqual(at[0][-1], lift.end, 9)
         self.assertAlmostEqual(at[1][0], lift.resumed, 9)
-        self.assertTrue(swivel.check_job(job, plan), plan)
-        self.assertTrue(swivel.check_job(job, plan.parts))
-        motion = swivel.time_job(job, plan.parts, speed=0.05)
+        self.assertTrue(swivel.check(job, plan), plan)
+        self.assertTrue(swivel.check(job, plan.parts))
+        motion = swivel.time(job, plan.parts, speed=0.05)
         self.assertTrue(motion.executable, motion)
-        self.assertTrue(swivel.check_job(job, motion))
-        timed = swivel.plan_job(job, speed=0.05)
-        self.assertTrue(swivel.check_job(job, timed.motion))
+        self.assertTrue(swivel.check(job, motion))
+        timed = swivel.plan(job, speed=0.05)
+        self.assertTrue(swivel.check(job, timed.motion))
         self.assertEqual(len(timed.motion.events), 4)
         copy_of = pickle.loads(pickle.dumps(plan))
         self.assertEqual(repr(copy_of.lift_offs), repr(plan.lift_offs))
-        self.assertTrue(swivel.check_job(pickle.loads(pickle.dumps(job)), copy_of))
+        self.assertTrue(swivel.check(pickle.loads(pickle.dumps(job)), copy_of))
 
     def test_what_is_left_out_is_found(self):
         job = ring()
-        parts = swivel.plan_job(job).parts
+        parts = swivel.plan(job).parts
         first, move, second = parts
         late = swivel.JobPart(second.trajectory, "ring/2", begin=second.begin + 0.03)
         with self.assertRaisesRegex(swivel.InvalidArgument, "'ring/2': begins at s = .* at most"):
-            swivel.check_job(job, [first, move, late])
+            swivel.check(job, [first, move, late])
         wrong = swivel.JobPart(second.trajectory, "ring/3", begin=second.begin)
         with self.assertRaisesRegex(swivel.InvalidArgument, "'ring/3': allowed is 'ring/2'"):
-            swivel.check_job(job, [first, move, wrong])
+            swivel.check(job, [first, move, wrong])
         for job, rows in ((job, [first]), (ring(lift=None), parts)):
             with self.assertRaisesRegex(swivel.InvalidArgument, "'ring/1' is no stroke"):
-                swivel.check_job(job, rows)
+                swivel.check(job, rows)
 
     def test_where_it_is_not_allowed(self):
-        plan = swivel.plan_job(ring(lift=None))
+        plan = swivel.plan(ring(lift=None))
         self.assertFalse(plan.solved)
         self.assertEqual(plan.lift_offs, [])
         with self.assertRaisesRegex(swivel.InvalidArgument, "lift: cost, overlap"):
@@ -715,12 +721,32 @@ class JobErrors(unittest.TestCase):
         self.assertNotIn("\n", str(caught.exception))
 
     def test_problems_are_no_jobs(self):
-        self.raises(swivel.InputError, r"door_job.yaml:\d+: .*job.*load_job\(\)",
-                    swivel.load_problem, DOOR)
-        self.raises(swivel.InputError, "a job", swivel.plan, DOOR)
-        self.raises(TypeError, r"a Job: .*plan_job\(\)", swivel.plan, swivel.load_job(DOOR))
-        with self.assertRaises(TypeError):
-            swivel.plan_job(None)
+        for function in (swivel.Planner, lambda of: swivel.measure(of, None)):
+            self.raises(swivel.InvalidArgument, "a problem with strokes: .* of one path",
+                        function, swivel.load(DOOR))
+        for name, value in (
+            ("check", len), ("check_motions", len), ("cost", len), ("chord", 0.1), ("refine", True)
+        ):
+            self.raises(swivel.InvalidArgument, f"{name}: of a problem of strokes: allowed with "
+                        "one path", swivel.plan, DOOR, **{name: value})
+        self.raises(swivel.InvalidArgument, "refine: .*strokes: allowed with two arms",
+                    swivel.time, DOOR, DOOR, refine=True)
+        self.raises(swivel.InvalidArgument, "advise: .* strokes", swivel.advise, DOOR, None)
+        self.raises(swivel.InvalidArgument, "stretch: a problem with strokes",
+                    swivel.load(DOOR).stretch, 0.1)
+        job = swivel.load(DOOR)
+        for word in ("waypoints", "start", "task", "closed"):
+            self.raises(AttributeError, f"{word}: of a problem of strokes: .* one path", getattr,
+                        job, word)
+        self.raises(AttributeError, "waypoints: of a problem of strokes", setattr, job,
+                    "waypoints", np.zeros((2, 7)))
+        path = swivel.load(DATA / "problems" / "experiment_c.yaml")
+        self.raises(AttributeError, "home: of a problem of one path: allowed with strokes",
+                    setattr, path, "home", HOME)
+        self.assertFalse(hasattr(path, "strokes"))
+        self.assertEqual((path.names, [one.source for one in path.arms]), ([], [path.source]))
+        for wrong in (None, 3):
+            self.raises(TypeError, "allowed are a Problem, or its file", swivel.plan, wrong)
 
     def test_values(self):
         job = small()
@@ -731,21 +757,21 @@ class JobErrors(unittest.TestCase):
             ("approach: allowed is a number from 0 on", setattr, (job, "approach", -0.1), {}),
             ("retract: allowed is a number from 0 on", setattr, (stroke, "retract", [1, 2]), {}),
             ("approach: allowed", setattr, (stroke, "approach", "up"), {}),
-            (r"home: allowed is \(7,\)", setattr, (job, "home", [1, 2]), {}),
+            (r"home of shape \(2,\): allowed is \(7,\)", setattr, (job, "home", [1, 2]), {}),
             ("feed: allowed is one number", setattr, (stroke, "feed", [[1, 2]]), {}),
-            ("speed: not a positive number", swivel.plan_job, (job,), {"speed": 0}),
-            ("turn_speed: not a positive", swivel.plan_job, (job,), {"turn_speed": -1}),
-            ("rate: allowed", swivel.plan_job, (job,), {"rate": 0}),
-            ("timeout: not a positive", swivel.plan_job, (job,), {"timeout": 0}),
-            ("threads: -1", swivel.plan_job, (job,), {"threads": -1}),
-            ("allowed for jobs are lazy and parallel", swivel.plan_job, (job,),
+            ("speed: not a positive number", swivel.plan, (job,), {"speed": 0}),
+            ("turn_speed: not a positive", swivel.plan, (job,), {"turn_speed": -1}),
+            ("rate: allowed", swivel.plan, (job,), {"rate": 0}),
+            ("timeout: not a positive", swivel.plan, (job,), {"timeout": 0}),
+            ("threads: -1", swivel.plan, (job,), {"threads": -1}),
+            ("allowed for jobs are lazy and parallel", swivel.plan, (job,),
              {"planner": "eager"}),
         ):
             self.raises(ValueError, message, function, *arguments, **keywords)
-        self.raises(TypeError, "progress: not callable", swivel.plan_job, job, progress=3)
-        self.raises(TypeError, r"strokes\[0\]: str: allowed are Strokes", swivel.Job, job.robot,
+        self.raises(TypeError, "progress: not callable", swivel.plan, job, progress=3)
+        self.raises(TypeError, r"strokes\[0\]: str: allowed are Strokes", swivel.Problem, job.robot,
                     ["a"])
-        self.raises(swivel.InputError, "nowhere", swivel.plan_job, "nowhere.yaml")
+        self.raises(swivel.InputError, "nowhere", swivel.plan, "nowhere.yaml")
 
     def test_what_no_job_may_have(self):
         for members, words in (
@@ -757,7 +783,7 @@ class JobErrors(unittest.TestCase):
             job = small()
             for name, value in members.items():
                 setattr(job.strokes[0], name, value)
-            self.raises(ValueError, words, swivel.plan_job, job)
+            self.raises(ValueError, words, swivel.plan, job)
         for members, words in (
             ({"rapid": 2.0}, "rapid: allowed"),
             ({"strokes": []}, "strokes: allowed is at least one"),
@@ -765,7 +791,7 @@ class JobErrors(unittest.TestCase):
         ):
             self.raises(swivel.InvalidArgument, words, small(**members).validate)
         job = small(process_speed=None)
-        self.raises(swivel.InputError, "stroke 'row_0' has no speed", swivel.plan_job, job, rate=50)
+        self.raises(swivel.InputError, "stroke 'row_0' has no speed", swivel.plan, job, rate=50)
 
 
 if __name__ == "__main__":

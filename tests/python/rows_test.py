@@ -154,8 +154,8 @@ class HalfTurns(unittest.TestCase):
             planner.set_task(task)
             for plan in (swivel.plan(changed), planner.plan(), swivel.Planner(robot, task).plan()):
                 self.assertEqual(plan.cost, cost)
-            job = swivel.Job(robot, [swivel.Stroke("one", task.waypoints)])
-            self.assertTrue(swivel.plan_job(job).solved)
+            job = swivel.Problem(robot, [swivel.Stroke("one", task.waypoints)])
+            self.assertTrue(swivel.plan(job).solved)
 
     def test_the_tool_leans_as_it_is_told(self):
         robot, given = self.robot(), self.waypoints(np.pi)
@@ -213,7 +213,7 @@ class Printed(unittest.TestCase):
 
 class PickledPlanners(unittest.TestCase):
     def test_planners(self):
-        problem = swivel.load_problem(PROBLEMS / "experiment_c.yaml")
+        problem = swivel.load(PROBLEMS / "experiment_c.yaml")
         planner = swivel.Planner(problem)
         planner.move("rail", problem.scene["rail"].pose)
         planner.remove("post")

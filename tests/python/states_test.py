@@ -186,7 +186,7 @@ class InverseKinematics(unittest.TestCase):
 class StateClearance(unittest.TestCase):
     def test_rows_of_a_plan_are_those_of_its_measures(self):
         for name in ("experiment_c", "ur5e_deburr_edge"):
-            planner = swivel.Planner(swivel.load_problem(PROBLEMS / f"{name}.yaml"))
+            planner = swivel.Planner(swivel.load(PROBLEMS / f"{name}.yaml"))
             plan = planner.plan(evidence=True)
             states = planner.clearance(plan.joints)
             self.assertEqual(len(states), len(plan.joints))
@@ -200,7 +200,7 @@ class StateClearance(unittest.TestCase):
             self.assertTrue((states.margin >= 0).all())
 
     def test_each_state_by_itself(self):
-        problem = swivel.load_problem(PROBLEMS / "experiment_c.yaml")
+        problem = swivel.load(PROBLEMS / "experiment_c.yaml")
         planner = swivel.Planner(problem)
         generator = np.random.default_rng(seed(2610))
         states = states_within(problem.robot, trials(400), generator)
@@ -233,7 +233,7 @@ class StateClearance(unittest.TestCase):
             self.assertAlmostEqual(below.margin[0], distance - 0.005, delta=1e-5)
 
     def test_bad_input(self):
-        planner = swivel.Planner(swivel.load_problem(PROBLEMS / "experiment_a.yaml"))
+        planner = swivel.Planner(swivel.load(PROBLEMS / "experiment_a.yaml"))
         self.assertEqual(len(planner.clearance(np.zeros((0, 7)))), 0)
         with self.assertRaisesRegex(ValueError, "joints of shape"):
             planner.clearance([[0, 0]])

@@ -30,9 +30,9 @@ class Workcells(unittest.TestCase):
     def test_plans_as_the_program_does(self):
         csv = self.folder / "both.csv"
         subprocess.run([PROGRAM, "plan", PLATE, "--out", csv, "--quiet"], check=True)
-        cell = swivel.load_workcell(PLATE)
+        cell = swivel.load(PLATE)
         self.assertEqual(list(cell.names), ["left", "right"])
-        plan = swivel.plan_workcell(cell, planner="lazy", evidence=True)
+        plan = swivel.plan(cell, planner="lazy", evidence=True)
         self.assertTrue(plan.solved)
         self.assertEqual(plan.decided_by, "arms alone")
         self.assertAlmostEqual(plan.cost, sum(plan.least_costs))
@@ -47,7 +47,7 @@ class Workcells(unittest.TestCase):
         result = json.loads(plan.to_json())
         self.assertEqual(result["arms"][0]["trajectory"][5]["joints"], list(left.joints[5]))
         for rows in (plan, plan.trajectories, csv):
-            check = swivel.check_workcell(PLATE, rows)
+            check = swivel.check(PLATE, rows)
             self.assertTrue(check, check.failures)
 
     def test_every_example_has_a_plan_that_passes_its_check(self):
@@ -55,13 +55,13 @@ class Workcells(unittest.TestCase):
         self.assertGreaterEqual(len(examples), 3)
         for example in examples:
             with self.subTest(example.name):
-                plan = swivel.plan_workcell(example)
+                plan = swivel.plan(example)
                 self.assertTrue(plan.solved)
-                check = swivel.check_workcell(example, plan)
+                check = swivel.check(example, plan)
                 self.assertTrue(check, check.failures)
 
     def test_check_finds_what_is_wrong(self):
-        plan = swivel.plan_workcell(PLATE)
+        plan = swivel.plan(PLATE)
         rows = dict(plan.trajectories)
         joints = np.array(rows["right"].joints)
         joints[7, 3] += 0.01
@@ -69,11 +69,11 @@ class Workcells(unittest.TestCase):
         rows["right"] = swivel.Trajectory(
             joints, right.s, right.phi, right.branch, right.joint_names
         )
-        check = swivel.check_workcell(PLATE, rows)
+        check = swivel.check(PLATE, rows)
         self.assertFalse(check.passed)
         self.assertIn("row 7", check.failures[0])
         with self.assertRaises(KeyError):
-            swivel.check_workcell(PLATE, {"left": plan.trajectories["left"]})
+            swivel.check(PLATE, {"left": plan.trajectories["left"]})
 
     def arms(self, gap, torso=0):
         """Two problems of one robot, whose tools move up side by side."""
@@ -91,8 +91,8 @@ class Workcells(unittest.TestCase):
 
     def test_advice_is_planned(self):
         arms = self.arms(0.11)
-        cell = swivel.Workcell(arms)
-        advice = swivel.advise_workcell(cell, swivel.plan_workcell(cell), timeout=60)
+        cell = swivel.Problem(arms)
+        advice = swivel.advise(cell, swivel.plan(cell), timeout=60)
         self.assertEqual(advice.arms, {})
         best = advice.cell[0]
         self.assertEqual((best.change, best.arm), (swivel.Change.MOVE_PATHS, "left"))
@@ -102,7 +102,7 @@ class Workcells(unittest.TestCase):
         self.assertIsNone(best.object)
         self.assertEqual(list(best.offset), [0, 0.02, 0])
         with self.assertRaisesRegex(ValueError, "timeout"):
-            swivel.advise_workcell(cell, swivel.plan_workcell(cell), timeout=0)
+            swivel.advise(cell, swivel.plan(cell), timeout=0)
 
     def test_advice_tells_what_helps_an_arm_by_itself(self):
         arms = self.arms(0.5)
@@ -110,13 +110,13 @@ class Workcells(unittest.TestCase):
         limits.joint_margin = 0.9
         task = arms["right"].task
         task.limits = limits
-        cell = swivel.Workcell(
+        cell = swivel.Problem(
             {"left": arms["left"], "right": swivel.Problem(arms["right"].robot, task)}
         )
-        plan = swivel.plan_workcell(cell)
+        plan = swivel.plan(cell)
         self.assertEqual(plan.status, "infeasible")
         self.assertTrue(np.isinf(plan.least_costs[1]))
-        advice = swivel.advise_workcell(cell, plan, timeout=60)
+        advice = swivel.advise(cell, plan, timeout=60)
         self.assertEqual(list(advice.arms), ["right"])
         alone = {one.change: one.outcome for one in advice.arms["right"]}
         self.assertEqual(alone[swivel.Change.JOINT_MARGIN], swivel.Outcome.SOLVED)
@@ -125,37 +125,37 @@ class Workcells(unittest.TestCase):
         self.assertEqual(best.asked, 0.9)
         limits.joint_margin = best.changed_to
         task.limits = limits
-        relaxed = swivel.Workcell(
+        relaxed = swivel.Problem(
             {"left": arms["left"], "right": swivel.Problem(arms["right"].robot, task)}
         )
-        self.assertEqual(swivel.plan_workcell(relaxed).cost, best.cost)
+        self.assertEqual(swivel.plan(relaxed).cost, best.cost)
 
     def test_is_made_of_two_problems(self):
-        cell = swivel.Workcell(self.arms(0.5))
-        self.assertRegex(repr(cell), "<Workcell of 'left' and 'right', 2 waypoints>")
-        plan = swivel.plan_workcell(cell)
+        cell = swivel.Problem(self.arms(0.5))
+        self.assertRegex(repr(cell), "<Problem of 'left' and 'right', 2 waypoints>")
+        plan = swivel.plan(cell)
         self.assertTrue(plan.solved)
         self.assertEqual({len(rows) for rows in plan.trajectories.values()}, {6})
-        self.assertTrue(swivel.check_workcell(cell, plan))
-        barred = swivel.plan_workcell(swivel.Workcell(self.arms(0.02)))
+        self.assertTrue(swivel.check(cell, plan))
+        barred = swivel.plan(swivel.Problem(self.arms(0.02)))
         self.assertEqual(barred.status, "infeasible")
         self.assertEqual(len(barred.conflict), 2)
         self.assertEqual(barred.trajectories, {})
         self.assertIsNone(barred.diagnosis("left"))
         with self.assertRaises(KeyError):
             barred.diagnosis("middle")
-        self.assertEqual(swivel.advise_workcell(cell, plan).cell, [])
+        self.assertEqual(swivel.advise(cell, plan).cell, [])
         with self.assertRaisesRegex(ValueError, "there is no plan"):
             barred.save(self.folder / "none.csv")
 
     def test_plans_beside_a_given_motion(self):
         arms = self.arms(0.5)
-        plan = swivel.plan_workcell(swivel.Workcell(arms))
+        plan = swivel.plan(swivel.Problem(arms))
         self.assertIsNone(plan.given)
         left = plan.trajectories["left"]
-        cell = swivel.Workcell({"left": (arms["left"].robot, left), "right": arms["right"]})
-        self.assertRegex(repr(cell), "<Workcell of 'left' and 'right', 2 waypoints>")
-        beside = swivel.plan_workcell(cell)
+        cell = swivel.Problem({"left": (arms["left"].robot, left), "right": arms["right"]})
+        self.assertRegex(repr(cell), "<Problem of 'left' and 'right', 2 waypoints>")
+        beside = swivel.plan(cell)
         self.assertEqual(beside.given, "left")
         self.assertTrue(np.array_equal(beside.trajectories["left"].joints, left.joints))
         self.assertTrue(
@@ -163,17 +163,17 @@ class Workcells(unittest.TestCase):
                 beside.trajectories["right"].joints, plan.trajectories["right"].joints
             )
         )
-        self.assertTrue(swivel.check_workcell(cell, beside))
+        self.assertTrue(swivel.check(cell, beside))
         given = {"left": (arms["left"].robot, left), "right": arms["right"]}
-        self.assertTrue(swivel.plan_workcell(swivel.Workcell(given, at_rows=[0, 5])).solved)
+        self.assertTrue(swivel.plan(swivel.Problem(given, at_rows=[0, 5])).solved)
         with self.assertRaises(swivel.InvalidArgument):
-            swivel.Workcell(given, at_rows=[0, 2, 5])
+            swivel.Problem(given, at_rows=[0, 2, 5])
         with self.assertRaisesRegex(ValueError, "ascending rows from 0"):
-            swivel.Workcell(given, at_rows=[1, 5])
+            swivel.Problem(given, at_rows=[1, 5])
         with self.assertRaisesRegex(ValueError, "both motions are given"):
-            swivel.Workcell({"left": given["left"], "right": given["left"]})
+            swivel.Problem({"left": given["left"], "right": given["left"]})
         with self.assertRaisesRegex(ValueError, "has other joints"):
-            swivel.Workcell({"left": arms["left"], "right": (arms["right"].robot, left)})
+            swivel.Problem({"left": arms["left"], "right": (arms["right"].robot, left)})
 
     def test_a_leader_of_six_joints(self):
         arms = self.arms(0.5)
@@ -204,11 +204,11 @@ class Workcells(unittest.TestCase):
         on_tool.resolution = task.resolution
         right = swivel.Problem(robots["right"], on_tool)
         with self.assertRaisesRegex(ValueError, "whose path would turn with its tool"):
-            swivel.plan_workcell(swivel.Workcell({"left": alone, "right": right}))
-        cell = swivel.Workcell({"left": (robots["left"], plan.trajectory), "right": right})
-        both = swivel.plan_workcell(cell)
+            swivel.plan(swivel.Problem({"left": alone, "right": right}))
+        cell = swivel.Problem({"left": (robots["left"], plan.trajectory), "right": right})
+        both = swivel.plan(cell)
         self.assertTrue(both.solved)
-        self.assertTrue(swivel.check_workcell(cell, both))
+        self.assertTrue(swivel.check(cell, both))
         joints = both.trajectories["left"].joints
         self.assertTrue(np.array_equal(joints[:, -1], turned))
         for row in range(len(joints)):
@@ -219,8 +219,8 @@ class Workcells(unittest.TestCase):
             self.assertLess(np.abs(there - asked).max(), 1e-5)
 
     def test_a_motion_in_time(self):
-        cell = swivel.Workcell(self.arms(0.5))
-        plan = swivel.plan_workcell(cell, speed=0.1, rate=125)
+        cell = swivel.Problem(self.arms(0.5))
+        plan = swivel.plan(cell, speed=0.1, rate=125)
         self.assertIsNone(plan.not_executable)
         left, right = plan.motions["left"], plan.motions["right"]
         np.testing.assert_array_equal(left.t, right.t)
@@ -229,27 +229,27 @@ class Workcells(unittest.TestCase):
         for motion in (left, right):
             for rate in motion.peaks.values():
                 self.assertLessEqual(np.max(rate), 1)
-        self.assertTrue(swivel.check_workcell(cell, plan.motions))
+        self.assertTrue(swivel.check(cell, plan.motions))
         file = self.folder / "motion.csv"
         plan.save_motion(file)
-        self.assertTrue(swivel.check_workcell(cell, file))
+        self.assertTrue(swivel.check(cell, file))
         self.assertTrue(json.loads(plan.to_json())["motion"]["executable"])
-        spoilt = {"left": left, "right": swivel.plan_workcell(cell, speed=0.05).motions["right"]}
-        self.assertFalse(swivel.check_workcell(cell, spoilt))
-        untimed = swivel.plan_workcell(cell)
+        spoilt = {"left": left, "right": swivel.plan(cell, speed=0.05).motions["right"]}
+        self.assertFalse(swivel.check(cell, spoilt))
+        untimed = swivel.plan(cell)
         self.assertEqual(untimed.motions, {})
         with self.assertRaisesRegex(ValueError, "there is no motion"):
             untimed.save_motion(file)
         with self.assertRaisesRegex(ValueError, "allowed with speed"):
-            swivel.plan_workcell(cell, rate=100)
+            swivel.plan(cell, rate=100)
         with self.assertRaisesRegex(ValueError, "allowed are two alike"):
-            swivel.check_workcell(cell, {"left": left, "right": untimed.trajectories["right"]})
+            swivel.check(cell, {"left": left, "right": untimed.trajectories["right"]})
 
     def test_refines(self):
-        cell = swivel.Workcell(self.arms(0.5))
-        plain = swivel.plan_workcell(cell)
+        cell = swivel.Problem(self.arms(0.5))
+        plain = swivel.plan(cell)
         self.assertEqual(plain.refinements, {})
-        plan = swivel.plan_workcell(cell, refine=True)
+        plan = swivel.plan(cell, refine=True)
         self.assertEqual(list(plan.refinements), ["left", "right"])
         self.assertLess(plan.cost, plain.cost)
         self.assertFalse(plan.stopped)
@@ -259,15 +259,15 @@ class Workcells(unittest.TestCase):
             np.testing.assert_array_equal(
                 arm.trajectory.joints, plan.trajectories[name].joints
             )
-        self.assertTrue(swivel.check_workcell(cell, plan))
+        self.assertTrue(swivel.check(cell, plan))
         self.assertAlmostEqual(json.loads(plan.to_json())["refinement"]["cost"], plan.cost)
-        timed = swivel.plan_workcell(cell, refine=True, speed=0.1)
-        self.assertTrue(swivel.check_workcell(cell, timed.motions))
+        timed = swivel.plan(cell, refine=True, speed=0.1)
+        self.assertTrue(swivel.check(cell, timed.motions))
 
     def test_time_is_up_before_the_motion(self):
-        cell = swivel.Workcell(self.arms(0.5))
+        cell = swivel.Problem(self.arms(0.5))
         for k in range(60):
-            plan = swivel.plan_workcell(cell, speed=0.05, refine=k % 2 == 1, timeout=2e-3 * 1.2**k)
+            plan = swivel.plan(cell, speed=0.05, refine=k % 2 == 1, timeout=2e-3 * 1.2**k)
             told = json.loads(plan.to_json())["motion"]
             if not plan.solved:
                 self.assertEqual((told, plan.not_executable), (None, None))
@@ -317,8 +317,8 @@ class Workcells(unittest.TestCase):
             [PROGRAM, "plan", file, "--quiet", "--certificate", proof], capture_output=True
         )
         self.assertEqual(done.returncode, 1, done.stderr)
-        cell = swivel.load_workcell(file)
-        plan = swivel.plan_workcell(cell)
+        cell = swivel.load(file)
+        plan = swivel.plan(cell)
         self.assertEqual(plan.status, "infeasible")
         self.assertIsNotNone(plan.conflict)
         certificate = plan.certificate()
@@ -329,11 +329,11 @@ class Workcells(unittest.TestCase):
         saved = self.folder / "saved.json"
         certificate.save(saved)
         self.assertEqual(saved.read_text(), proof.read_text())
-        self.assertEqual(swivel.load_workcell_certificate(proof), certificate)
+        self.assertEqual(swivel.load_certificate(proof), certificate)
         self.assertEqual(pickle.loads(pickle.dumps(certificate)), certificate)
         for of in (cell, file):
             for what in (certificate, proof):
-                check = swivel.check_workcell_certificate(of, what)
+                check = swivel.check_certificate(of, what)
                 self.assertTrue(check, check.failure)
         self.assertIsNone(check.failure)
         self.assertEqual((check.regions, check.cuts), (certificate.regions, certificate.cuts))
@@ -347,17 +347,17 @@ class Workcells(unittest.TestCase):
         forged = json.loads(proof.read_text())
         forged["sets"][-1].update(layers=[])
         saved.write_text(json.dumps(forged))
-        check = swivel.check_workcell_certificate(cell, saved)
+        check = swivel.check_certificate(cell, saved)
         self.assertFalse(check.passed)
         self.assertIn("failed", repr(check))
         with self.assertRaises(swivel.InputError):
-            swivel.check_workcell_certificate(PLATE, proof)
+            swivel.check_certificate(PLATE, proof)
         with self.assertRaises(TimeoutError):
             plan.certificate(timeout=1e-9)
         with self.assertRaisesRegex(ValueError, "'solved': allowed is one that is infeasible"):
-            swivel.plan_workcell(PLATE).certificate()
+            swivel.plan(PLATE).certificate()
         with self.assertRaisesRegex(ValueError, "without refine and speed"):
-            swivel.plan_workcell(cell, speed=0.1).certificate()
+            swivel.plan(cell, speed=0.1).certificate()
 
     @unittest.skipUnless(swivel._swivel._page_available(), "built without pages")
     def test_pages(self):
@@ -368,7 +368,7 @@ class Workcells(unittest.TestCase):
         ):
             page = self.folder / "page.html"
             done = subprocess.run([PROGRAM, "plan", file, "--report", page, "--quiet", *options])
-            plan = swivel.plan_workcell(file, **keywords)
+            plan = swivel.plan(file, **keywords)
             self.assertEqual(done.returncode, 0 if plan.solved else 1)
             other = self.folder / "other.html"
             self.assertIsNone(plan.report(other))
@@ -392,14 +392,14 @@ class Workcells(unittest.TestCase):
 
     def test_trajectories_are_timed_as_the_program_does(self):
         csv, theirs, own = (self.folder / name for name in ("both.csv", "theirs.csv", "own.csv"))
-        cell = swivel.load_workcell(PLATE)
-        plan = swivel.plan_workcell(cell)
+        cell = swivel.load(PLATE)
+        plan = swivel.plan(cell)
         plan.save(csv)
         for keywords, options in (({}, ()), ({"refine": True}, ("--refine", ))):
             words = ["time", PLATE, csv, "--speed", "0.05", "--out", theirs, "--quiet", *options]
             subprocess.run([PROGRAM, *words], check=True)
             for rows in (plan, plan.trajectories, csv):
-                motion = swivel.time_workcell(cell, rows, speed=0.05, **keywords)
+                motion = swivel.time(cell, rows, speed=0.05, **keywords)
                 motion.save(own)
                 self.assertEqual(own.read_bytes(), theirs.read_bytes())
             self.assertTrue(motion.executable)
@@ -407,40 +407,40 @@ class Workcells(unittest.TestCase):
             self.assertEqual(len(motion.refinements), 2 if keywords else 0)
             rest = motion.motions["left"].t[-1] - motion.duration  # of the last sample
             self.assertTrue(0 <= rest < 1 / 250)
-            self.assertTrue(swivel.check_workcell(cell, motion))
-            self.assertTrue(swivel.check_workcell(cell, motion.motions))
+            self.assertTrue(swivel.check(cell, motion))
+            self.assertTrue(swivel.check(cell, motion.motions))
             again = pickle.loads(pickle.dumps(motion))
             again.save(own)
             self.assertEqual(own.read_bytes(), theirs.read_bytes())
             self.assertEqual(repr(again), repr(motion))
-        again = swivel.time_workcell(cell, own, speed=0.05)  # its times are left aside
+        again = swivel.time(cell, own, speed=0.05)  # its times are left aside
         with tempfile.TemporaryDirectory() as folder:
             for ending in ("json", "yaml", "mcap"):
                 file = Path(folder) / f"m.{ending}"
                 motion.save(file)
-                self.assertTrue(swivel.check_workcell(cell, file))
-                timed = swivel.time_workcell(cell, file, speed=0.05)
+                self.assertTrue(swivel.check(cell, file))
+                timed = swivel.time(cell, file, speed=0.05)
                 for arm in ("left", "right"):
                     np.testing.assert_allclose(
                         timed.motions[arm].joints, again.motions[arm].joints, atol=1e-6
                     )
         with self.assertRaisesRegex(ValueError, "allowed are Trajectories"):
-            swivel.time_workcell(cell, motion.motions, speed=0.05)
+            swivel.time(cell, motion.motions, speed=0.05)
         with self.assertRaisesRegex(ValueError, "speed: is not given"):
-            swivel.time_workcell(cell, plan)
+            swivel.time(cell, plan)
         with self.assertRaisesRegex(ValueError, "rate"):
-            swivel.time_workcell(cell, plan, speed=0.05, rate=0)
+            swivel.time(cell, plan, speed=0.05, rate=0)
         with self.assertRaises(TimeoutError):
-            swivel.time_workcell(cell, plan, speed=0.05, timeout=1e-6)
+            swivel.time(cell, plan, speed=0.05, timeout=1e-6)
         with self.assertRaisesRegex(ValueError, "has no trajectories"):
-            swivel.time_workcell(self.barred(), swivel.plan_workcell(self.barred()), speed=0.05)
+            swivel.time(self.barred(), swivel.plan(self.barred()), speed=0.05)
 
     def test_plans_are_pickled(self):
-        cell = swivel.Workcell(self.arms(0.5))
+        cell = swivel.Problem(self.arms(0.5))
         for plan in (
-            swivel.plan_workcell(cell, evidence=True),
-            swivel.plan_workcell(cell, speed=0.1, refine=True),
-            swivel.plan_workcell(swivel.Workcell(self.arms(0.02))),
+            swivel.plan(cell, evidence=True),
+            swivel.plan(cell, speed=0.1, refine=True),
+            swivel.plan(swivel.Problem(self.arms(0.02))),
         ):
             again = pickle.loads(pickle.dumps(plan))
             self.assertEqual(again.to_json(), plan.to_json())
@@ -453,29 +453,45 @@ class Workcells(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "unpickled has none"):
             again.certificate()
         self.assertEqual(
-            again.certificate(swivel.Workcell(self.arms(0.02))), plan.certificate()
+            again.certificate(swivel.Problem(self.arms(0.02))), plan.certificate()
         )
         if swivel._swivel._page_available():
-            again = pickle.loads(pickle.dumps(swivel.plan_workcell(cell)))
+            again = pickle.loads(pickle.dumps(swivel.plan(cell)))
             with self.assertRaisesRegex(ValueError, "unpickled has none"):
                 again.report()
             self.assertGreater(len(swivel.report(cell, again)), 100_000)
             with self.assertRaisesRegex(ValueError, "another answer"):
-                swivel.report(swivel.Workcell(self.arms(0.4)), again)
+                swivel.report(swivel.Problem(self.arms(0.4)), again)
 
     def test_bad_input(self):
-        with self.assertRaisesRegex(swivel.InputError, "has no `arms`"):
-            swivel.load_workcell(DATA / "problems" / "experiment_c.yaml")
+        path = DATA / "problems" / "experiment_c.yaml"
+        with self.assertRaisesRegex(swivel.InvalidArgument, "one path: allowed with two arms"):
+            swivel.time(path, self.folder / "none.csv", refine=True)
+        cell = swivel.load(PLATE)
+        for call in (
+            lambda: swivel.Planner(cell), lambda: cell.stretch(0), lambda: cell.save("a.yaml"),
+            lambda: swivel.plan(cell, chord=0.1), lambda: swivel.check(cell, None, speed=1),
+            lambda: swivel.load_trajectory("a.csv", problem=cell)
+        ):
+            with self.assertRaisesRegex(swivel.InvalidArgument, "a problem of two arms: allowed"):
+                call()
+        for word in ("name", "tool_pose", "scene", "limits", "waypoints", "strokes"):
+            with self.assertRaisesRegex(AttributeError, f"{word}: of a problem of two arms"):
+                getattr(cell, word)
+        with self.assertRaisesRegex(AttributeError, "limits: of a problem of two arms"):
+            cell.limits = swivel.Limits()
+        for name, arm in zip(cell.names, cell.arms):
+            self.assertEqual((len(arm.waypoints), arm.names), (2, []), name)
         with self.assertRaisesRegex(ValueError, "has 0 entries"):
-            swivel.Workcell({})
+            swivel.Problem({})
         arms = self.arms(0.5)
         arms["right"] = self.arms(0.5, torso=0.2)["right"]
         with self.assertRaisesRegex(swivel.InvalidArgument, "hold"):
-            swivel.Workcell(arms)
+            swivel.Problem(arms)
         with self.assertRaises(swivel.InvalidArgument):
-            swivel.plan_workcell(PLATE, planner="eager")
+            swivel.plan(PLATE, planner="eager")
         with self.assertRaises(ValueError):
-            swivel.plan_workcell(PLATE, threads=-1)
+            swivel.plan(PLATE, threads=-1)
 
 
 class WorkcellStudies(unittest.TestCase):
@@ -513,7 +529,7 @@ class WorkcellStudies(unittest.TestCase):
         return [[*line.split(",")[:3], *line.split(",")[4:]] for line in text.splitlines()]
 
     def test_placements(self):
-        cell = swivel.load_workcell(self.file)
+        cell = swivel.load(self.file)
         for arguments, keywords in (
             (("--path", "--x", "-0.1:0.2:0.15", "--y", "-0.2:0.2:0.2"),
              {"path": True, "x": (-0.1, 0.2, 0.15), "y": (-0.2, 0.2, 0.2)}),
@@ -534,7 +550,7 @@ class WorkcellStudies(unittest.TestCase):
             thing, moved = next(iter(keywords.items()))
             for row in rows:
                 which = {key: keywords[key] for key in ("arm",) if key in keywords}
-                plan = swivel.plan_workcell(
+                plan = swivel.plan(
                     cell.placed(row.offset, hold=row.hold, **which, **{thing: moved})
                 )
                 self.assertEqual(plan.status, row.status)
@@ -543,24 +559,24 @@ class WorkcellStudies(unittest.TestCase):
         self.assertEqual(self.saved(swivel.place(self.file, **keywords)), wanted)
 
     def test_campaigns(self):
-        cell = swivel.load_workcell(self.file)
+        cell = swivel.load(self.file)
         wanted = self.table("campaign", "--episodes", "8", "--seed", "2")
         for what, threads in ((cell, 1), (self.file, 2)):
             rows = swivel.campaign(what, episodes=8, seed=2, threads=threads)
             self.assertEqual(self.without_time(self.saved(rows)), self.without_time(wanted))
         self.assertTrue(0 < rows.solved.sum() < 8)
         for k, row in enumerate(rows):
-            plan = swivel.plan_workcell(cell.episode(2, k))
+            plan = swivel.plan(cell.episode(2, k))
             self.assertEqual(plan.status, row.status)
             self.assertEqual(plan.cost if plan.solved else None, row.cost)
             self.assertEqual(bool(row.reason), not row.solved)
 
     def test_pickled(self):
-        cell = swivel.load_workcell(self.file)
+        cell = swivel.load(self.file)
         again = pickle.loads(pickle.dumps(cell))
         self.assertEqual(repr(again), repr(cell))
         self.assertEqual(again.source, cell.source)
-        plan, other = swivel.plan_workcell(cell), swivel.plan_workcell(again)
+        plan, other = swivel.plan(cell), swivel.plan(again)
         np.testing.assert_array_equal(
             plan.trajectories["left"].joints, other.trajectories["left"].joints
         )
@@ -570,7 +586,7 @@ class WorkcellStudies(unittest.TestCase):
         )
 
     def test_refused(self):
-        cell = swivel.load_workcell(self.file)
+        cell = swivel.load(self.file)
         with self.assertRaisesRegex(swivel.InvalidArgument, "'left': no such object"):
             swivel.place(cell, object="left", x=0.1)
         with self.assertRaisesRegex(swivel.InvalidArgument, "planner: allowed for workcells"):

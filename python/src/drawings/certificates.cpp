@@ -7,8 +7,8 @@
 #include "archive.hpp"
 #include "bindings.hpp"
 #include "interruptible.hpp"
-#include "job.hpp"
 #include "plan_keywords.hpp"
+#include "problem.hpp"
 #include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/answer/infeasibility_certificate.hpp"
 #include "swivel/core/messages/formatted.hpp"
@@ -30,10 +30,10 @@ namespace {
 
 /// Plans a problem, and returns the certificate that it has no path; nothing where it has one.
 /// Throws TimeoutError.
-std::optional<InfeasibilityCertificate> certificate_of(const PathProblem& problem,
-                                                       const py::object& kind, int threads,
-                                                       std::optional<double> timeout) {
+std::optional<InfeasibilityCertificate> certificate_of(const Problem& given, const py::object& kind,
+                                                       int threads, std::optional<double> timeout) {
   PlanOptions options = to_plan_options(kind, threads, timeout);
+  const PathProblem problem = path_of(given, "certificate");
   return interruptible([&](const std::stop_token& stop) -> std::optional<InfeasibilityCertificate> {
     const Budget budget(timeout, nullptr, stop);
     options.stop = stop;
@@ -45,20 +45,9 @@ std::optional<InfeasibilityCertificate> certificate_of(const PathProblem& proble
   });
 }
 
-CertificateCheck verdict_on(const PathProblem& problem, const InfeasibilityCertificate& certificate,
-                            std::optional<double> timeout) {
-  if (!certificate.stroke.empty())
-    throw InputError("certificate", "stroke: is of stroke '" + certificate.stroke +
-                                        "' of a job: allowed is a certificate of one path");
-  return interruptible([&](const std::stop_token& stop) {
-    const Budget budget(timeout, nullptr, stop);
-    return verify_certificate(PreparedRobot(problem, budget), problem, certificate, budget);
-  });
-}
-
 /// Verifies the certificate that a stroke of a job has no path. Throws InputError for a stroke that
 /// the job does not have.
-CertificateCheck verdict_on_stroke(const Job& of, const InfeasibilityCertificate& certificate,
+CertificateCheck verdict_on_stroke(const Problem& of, const InfeasibilityCertificate& certificate,
                                    std::optional<double> timeout) {
   const swivel::Problem job = to_core(of);
   const auto stroke = find_stroke(job, certificate.stroke);
@@ -77,6 +66,19 @@ CertificateCheck verdict_on_stroke(const Job& of, const InfeasibilityCertificate
   });
 }
 
+CertificateCheck verdict_on(const Problem& given, const InfeasibilityCertificate& certificate,
+                            std::optional<double> timeout) {
+  if (!certificate.stroke.empty() && !given.strokes.list)
+    throw InputError("certificate", "stroke: is of stroke '" + certificate.stroke +
+                                        "' of a job: allowed is a certificate of one path");
+  if (given.strokes.list) return verdict_on_stroke(given, certificate, timeout);
+  const PathProblem problem = path_of(given, "certificate");
+  return interruptible([&](const std::stop_token& stop) {
+    const Budget budget(timeout, nullptr, stop);
+    return verify_certificate(PreparedRobot(problem, budget), problem, certificate, budget);
+  });
+}
+
 std::string words_of(const InfeasibilityCertificate& certificate) {
   const std::string of =
       certificate.stroke.empty()
@@ -89,7 +91,7 @@ std::string words_of(const InfeasibilityCertificate& certificate) {
 }
 
 /// Returns the certificate that a workcell has no plan. Throws ValueError for another plan.
-WorkcellCertificate proof_of(const WorkcellPlan& plan, const Workcell* given,
+WorkcellCertificate proof_of(const WorkcellPlan& plan, const Problem* given,
                              std::optional<double> timeout) {
   if (plan.plan->status != PlanStatus::kInfeasible)
     throw py::value_error(std::string("the plan is '") + to_string(plan.plan->status) +
@@ -103,19 +105,10 @@ WorkcellCertificate proof_of(const WorkcellPlan& plan, const Workcell* given,
   });
 }
 
-WorkcellCertificateCheck verdict_on_workcell(
-    const std::variant<const Workcell*, std::filesystem::path>& workcell,
-    const std::variant<const WorkcellCertificate*, std::filesystem::path>& certificate,
-    std::optional<double> timeout) {
-  const auto* const made = std::get_if<const Workcell*>(&workcell);
-  const auto cell = made != nullptr ? (*made)->cell
-                                    : std::make_shared<const swivel::Problem>(io::load_workcell(
-                                          std::get<std::filesystem::path>(workcell)));
-  const auto* const known = std::get_if<const WorkcellCertificate*>(&certificate);
-  const WorkcellCertificate proof =
-      known != nullptr
-          ? **known
-          : io::load_workcell_certificate(std::get<std::filesystem::path>(certificate));
+WorkcellCertificateCheck verdict_on_workcell(const Problem& problem,
+                                             const WorkcellCertificate& proof,
+                                             std::optional<double> timeout) {
+  const auto cell = two_arms_of(&problem);
   return interruptible([&](const std::stop_token& stop) {
     const Budget budget(timeout, nullptr, stop);
     return verify_certificate(PreparedWorkcell(*cell, budget), proof, budget);
@@ -151,7 +144,7 @@ void bind_workcell_certificates(py::module_& m) {
             io::write_file(file, io::to_json(x));
           },
           py::arg("file"),
-          "As JSON, which `swivel check --certificate` and check_workcell_certificate() read.")
+          "As JSON, which `swivel check --certificate` and check_certificate() read.")
       .def(
           "__eq__",
           // cuts in files have no lattice of their own
@@ -192,15 +185,8 @@ void bind_workcell_certificates(py::module_& m) {
         return formatted("<WorkcellCertificateCheck passed: %lld regions, %lld cuts>",
                          static_cast<long long>(x.regions), static_cast<long long>(x.cuts));
       });
-  m.def("load_workcell_certificate", &io::load_workcell_certificate, py::arg("file"),
-        "A WorkcellCertificate: what `plan WORKCELL --certificate` or save() wrote. Raises "
-        "InputError.");
-  m.def("check_workcell_certificate", &verdict_on_workcell, py::arg("workcell").none(false),
-        py::arg("certificate").none(false), py::kw_only(), py::arg("timeout") = py::none(),
-        "Verifies from the workcell alone that it has no plan, as `swivel check --certificate` "
-        "does: WorkcellCertificateCheck.\n\n"
-        "workcell, certificate: a Workcell and a WorkcellCertificate, or the names of their files. "
-        "timeout: s. Raises InputError for the certificate of another workcell, and TimeoutError.");
+  m.def("_load_workcell_certificate", &io::load_workcell_certificate);
+  m.def("_check_workcell_certificate", &verdict_on_workcell);
   m.def("_workcell_certificate", &proof_of, py::arg("plan"), py::arg("workcell"),
         py::arg("timeout"));
 }
@@ -273,13 +259,10 @@ void bind_certificates(py::module_& m) {
         return formatted("<CertificateCheck passed: nothing leads from s = %.4f to %.4f m>", x.s[0],
                          x.s[1]);
       });
-  m.def("load_certificate", &io::load_certificate, py::arg("file"),
-        "A Certificate: what `plan --certificate` or save() wrote. Raises InputError.");
+  m.def("_load_certificate", &io::load_certificate);
   m.def("_certificate", &certificate_of, py::arg("problem"), py::arg("planner"), py::arg("threads"),
         py::arg("timeout"));
   m.def("_check_certificate", &verdict_on, py::arg("problem"), py::arg("certificate"),
-        py::arg("timeout"));
-  m.def("_check_certificate", &verdict_on_stroke, py::arg("problem"), py::arg("certificate"),
         py::arg("timeout"));
 }
 

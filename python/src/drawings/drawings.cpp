@@ -29,14 +29,14 @@ struct Drawing {
 
 /// Returns the problem that a plan is of, as it was planned: `given`, or the one that the plan
 /// keeps. Throws ValueError if there is none, and for plans that functions of Python decided.
-PathProblem problem_of(const Plan& plan, const PathProblem* given) {
+PathProblem problem_of(const Plan& plan, const Problem* given) {
   if (plan.own_functions)
     throw py::value_error(
         "the plan depends on check, check_motions or cost: allowed are plans of the problem alone");
   if (given == nullptr && !plan.problem)
     throw py::value_error(
         "problem: a plan that was unpickled has none: allowed is the problem that was planned");
-  PathProblem problem = given != nullptr ? *given : *plan.problem;
+  PathProblem problem = given != nullptr ? path_of(*given, "problem") : *plan.problem;
   if (plan.timing)
     problem = with_motion_defaults(std::move(problem));
   else if (plan.refined)
@@ -65,7 +65,7 @@ std::string page_of(const PlanView& view, const LatticeMap& map, const MotionPla
 
 /// Plans again what a plan is of, and draws it. `full`: the clearance of every node is asked.
 /// Throws ValueError for plans without a verdict, and if another path is found.
-Drawing draw(const Plan& plan, const PathProblem* given, bool with_page, bool full) {
+Drawing draw(const Plan& plan, const Problem* given, bool with_page, bool full) {
   if (with_page) require_pages();
   const PlanStatus status = plan.result().status;
   if (status != PlanStatus::kSolved && status != PlanStatus::kInfeasible)
@@ -100,7 +100,7 @@ bool same_rows(const Answer& a, const Answer& b) {
 
 /// Plans a workcell again and returns its page. Throws ValueError for plans without a verdict, and
 /// if another plan is found.
-std::string page_of(const WorkcellPlan& plan, const Workcell* given) {
+std::string page_of(const WorkcellPlan& plan, const Problem* given) {
   require_pages();
   const Answer& known = *plan.plan;
   if ((known.status != PlanStatus::kSolved && known.status != PlanStatus::kInfeasible) ||
@@ -139,13 +139,13 @@ void require_pages() {
 void bind_drawings(py::module_& m) {
   m.def(
       "_draw_workcell",
-      [](const WorkcellPlan& plan, const Workcell* workcell) { return page_of(plan, workcell); },
+      [](const WorkcellPlan& plan, const Problem* workcell) { return page_of(plan, workcell); },
       py::arg("plan"), py::arg("workcell"),
       "The page of a workcell's plan as HTML; used by the package's report().");
   m.def("_page_available", &page_available);
   m.def(
       "_draw",
-      [](const Plan& plan, const PathProblem* problem, bool page, bool full) {
+      [](const Plan& plan, const Problem* problem, bool page, bool full) {
         const Drawing drawing = draw(plan, problem, page, full);
         return py::make_tuple(drawing.map, drawing.page);
       },

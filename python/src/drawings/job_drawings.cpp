@@ -23,7 +23,7 @@ namespace {
 
 /// Returns the job that a plan is of as it was planned: `given`, or the one that the plan keeps.
 /// Throws ValueError if there is none, and for plans without a verdict.
-swivel::Problem completed(const JobPlan& plan, const Job* given) {
+swivel::Problem completed(const JobPlan& plan, const Problem* given) {
   const PlanStatus status = plan.result().status;
   if ((status != PlanStatus::kSolved && status != PlanStatus::kInfeasible) || plan.plan->stopped)
     throw py::value_error("the plan was stopped: allowed are plans that were not");
@@ -62,7 +62,7 @@ Answer planned_again(const JobPlan& plan, const PreparedRobot& robot, const swiv
 }
 
 /// Returns the page of a job's plan.
-std::string page_of(const JobPlan& plan, const Job* given) {
+std::string page_of(const JobPlan& plan, const Problem* given) {
   require_pages();
   const swivel::Problem job = completed(plan, given);
   return interruptible([&](const std::stop_token& stop) {
@@ -86,7 +86,7 @@ std::string page_of(const JobPlan& plan, const Job* given) {
 
 /// Returns the certificate that the first stroke without a path has none. Throws ValueError where
 /// each has one, and for plans with a motion, TimeoutError.
-InfeasibilityCertificate proof_of(const JobPlan& plan, const Job* given,
+InfeasibilityCertificate proof_of(const JobPlan& plan, const Problem* given,
                                   std::optional<double> timeout) {
   if (plan.timing)
     throw py::value_error(

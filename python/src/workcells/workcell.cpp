@@ -8,12 +8,13 @@
 #include <variant>
 
 #include "interruptible.hpp"
-#include "job.hpp"
 #include "plan_keywords.hpp"
+#include "problem.hpp"
 #include "results.hpp"
 #include "runs.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/messages/formatted.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/problem/problem.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/robot/motion_defaults.hpp"
@@ -32,93 +33,6 @@ namespace {
 struct WorkcellCheck {
   AnswerCheck result;
 };
-
-Workcell shared(swivel::Problem cell) {
-  return {std::make_shared<const swivel::Problem>(std::move(cell))};
-}
-
-/// Returns true if two scenes have objects of the same names at the same places.
-bool same_places(const std::vector<SceneObject>& a, const std::vector<SceneObject>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](const SceneObject& x, const SceneObject& y) {
-                      return x.name == y.name && x.pose.matrix() == y.pose.matrix();
-                    });
-}
-
-/// Gives an arm the rows of a motion; limits, resolution and cost are those of `like`. Throws
-/// ValueError for rows of other joints.
-void give(ArmTask& arm, const Robot& robot, const Trajectory& motion, const Task& like) {
-  static_cast<Robot&>(arm) = robot;
-  if (arm.roll) arm.roll = Roll{};  // the rows say how the tool stands turned
-  const auto names =
-      build_arm(*robot.model, robot.base_link, robot.tip_link, robot.hold, robot.tool, robot.roll)
-          .chain.joint_names;
-  if (!std::equal(names.begin(), names.end(), motion.joint_names.begin(), motion.joint_names.end()))
-    throw py::value_error("arms: the trajectory of '" + arm.name +
-                          "' has other joints than its robot: allowed are rows of this robot");
-  arm.path().limits = like.limits;
-  arm.path().resolution = like.resolution;
-  arm.path().cost = like.cost;
-  for (const TrajectoryRow& row : *motion.rows) arm.given.push_back(row.q);
-}
-
-/// Returns the steps between rows at which waypoints are. Throws ValueError unless they ascend
-/// from 0.
-std::vector<int> steps_of(const std::vector<int>& at_rows) {
-  std::vector<int> steps;
-  for (std::size_t k = 1; k < at_rows.size(); ++k) steps.push_back(at_rows[k] - at_rows[k - 1]);
-  if (at_rows.front() != 0 || std::any_of(steps.begin(), steps.end(), [](int n) { return n < 1; }))
-    throw py::value_error("at_rows: allowed are ascending rows from 0");
-  return steps;
-}
-
-using Arms = Typed<"dict[str, Problem | tuple[Robot, Trajectory]]", py::dict>;
-/// Makes a workcell of two arms, whose scene is that of the first that has a problem.
-Workcell make_workcell(const Arms& arms, const std::vector<std::array<std::string, 2>>& touch,
-                       const std::vector<int>& at_rows) {
-  if (arms.size() != 2)
-    throw py::value_error("arms: has " + std::to_string(arms.size()) +
-                          " entries: allowed are two, name -> Problem");
-  auto cell = std::make_shared<swivel::Problem>(two_arms());
-  std::size_t k = 0;
-  const PathProblem* first_problem = nullptr;
-  for (const auto& [name, value] : arms) {
-    ArmTask& arm = cell->arms[k++];
-    arm.name = py::str(name);
-    if (py::isinstance<py::tuple>(value)) continue;  // its motion is given
-    const auto& problem = value.cast<const PathProblem&>();
-    static_cast<Robot&>(arm) = problem;
-    static_cast<Task&>(arm.path()) = problem;
-    if (!at_rows.empty()) arm.path().steps = steps_of(at_rows);
-    if (first_problem == nullptr) {
-      first_problem = &problem;
-      cell->scene = problem.scene;
-      cell->vary = problem.vary;
-      cell->source = problem.source;
-    } else if (!problem.scene.empty() && !same_places(problem.scene, cell->scene)) {
-      throw py::value_error(
-          "arms: have different scenes: allowed is one scene, or none of the "
-          "second arm");
-    }
-  }
-  if (first_problem == nullptr)
-    throw py::value_error("arms: both motions are given: allowed is one Problem at least");
-  k = 0;
-  for (const auto& [name, value] : arms) {
-    ArmTask& arm = cell->arms[k++];
-    if (!py::isinstance<py::tuple>(value)) continue;
-    const auto& [robot, motion] = value.cast<std::pair<const Robot*, const Trajectory*>>();
-    give(arm, *robot, *motion, *first_problem);
-  }
-  // Two Robots of Python that were loaded from one file have a model each.
-  const RobotModel &first = *cell->arms[0].model, &second = *cell->arms[1].model;
-  if (first.source == second.source && first.links.size() == second.links.size() &&
-      first.joints.size() == second.joints.size())
-    cell->arms[1].model = cell->arms[0].model;
-  cell->may_touch = touch;
-  validate(*cell);
-  return {std::move(cell)};
-}
 
 /// Returns the number of an arm. Throws KeyError for an unknown name.
 std::size_t number_of(const std::array<std::string, 2>& names, const std::string& name) {
@@ -149,9 +63,9 @@ WorkcellMotion motion_of(const WorkcellPlan& plan) {
   return made;
 }
 
-WorkcellPlan plan(const WorkcellOrFile& of, PlanOptions options,
+WorkcellPlan plan(const ProblemOrFile& of, PlanOptions options,
                   const std::optional<TimingOptions>& timing, bool refine) {
-  const auto cell = to_core(of);
+  const auto cell = two_arms_of(of);
   WorkcellPlan made{
       .timing = timing, .refined = refine, .frame = cell->arms[0].base_link, .cell = cell};
   made.plan = std::make_shared<const Answer>(interruptible([&](const std::stop_token& stop) {
@@ -192,8 +106,8 @@ void complete(const PreparedWorkcell& prepared, io::WorkcellRows& read,
 
 using RowsByName = Typed<"dict[str, Trajectory] | dict[str, Motion]", py::dict>;
 using Checked = std::variant<WorkcellPlan, WorkcellMotion, RowsByName, std::filesystem::path>;
-WorkcellCheck check(const WorkcellOrFile& of, const Checked& rows) {
-  const auto cell = to_core(of);
+WorkcellCheck check(const ProblemOrFile& of, const Checked& rows) {
+  const auto cell = two_arms_of(of);
   const auto names = names_of(*cell);
   io::WorkcellRows given;
   if (const auto* const dict = std::get_if<RowsByName>(&rows)) given = rows_of(*dict, names);
@@ -215,58 +129,6 @@ WorkcellCheck check(const WorkcellOrFile& of, const Checked& rows) {
     if (!timed) return {check_workcell(*prepared, given.rows, options)};
     return {check_workcell_motion(*prepared, given.timed, options)};
   });
-}
-
-void bind_cell(py::module_& m) {
-  py::class_<Workcell>(m, "Workcell", "Two arms of one robot that work at one time.")
-      .def(
-          py::init(&make_workcell), py::arg("arms"), py::kw_only(),
-          py::arg("may_touch") = std::vector<std::array<std::string, 2>>(),
-          py::arg("at_rows") = std::vector<int>(),
-          "arms: two entries, name -> Problem, of one robot model with one base link and one "
-          "`hold`; the `frame` of one path may be the name of the other arm, which leads then. The "
-          "scene is that of the first. One entry may be (Robot, Trajectory) instead: an arm whose "
-          "motion is given, with limits, resolution and cost of the other. at_rows: the row of "
-          "that "
-          "motion at which each waypoint of the other arm is; empty: there is one for each row, or "
-          "two. may_touch: pairs of bodies, one of either arm, that may touch. Raises "
-          "InvalidArgument.")
-      .def_property_readonly(
-          "names", [](const Workcell& w) { return names_of(*w.cell); }, "Names of both arms.")
-      .def_property_readonly("source", [](const Workcell& w) { return w.cell->source; })
-      .def(
-          "placed",
-          [](const Workcell& w, const Offset& offset, const std::optional<std::string>& object,
-             bool path, bool base, const std::optional<std::string>& arm,
-             const HeldPositions& hold) {
-            return shared(placed_problem(held_as(*w.cell, hold),
-                                         to_movable(object, path, base, !hold.empty(), arm),
-                                         offset));
-          },
-          py::arg("offset"), py::kw_only(), py::arg("object") = py::none(), py::arg("path") = false,
-          py::arg("base") = false, py::arg("arm") = py::none(), py::arg("hold") = HeldPositions(),
-          "The workcell of one placement: an object of the scene with the paths on it, the paths "
-          "of both arms (a follower's with its leader's tool) or that of `arm` alone, or the robot "
-          "moved by x y z (m) roll pitch yaw (rad) in the base frame, about its own origin, with "
-          "the joints of `hold` held there, rad or m. The path of a follower alone is moved in the "
-          "frame of its leader's tool.")
-      .def(
-          "episode",
-          [](const Workcell& w, std::uint64_t seed, std::uint64_t episode) {
-            return shared(episode_problem(*w.cell, seed, episode));
-          },
-          py::arg("seed"), py::arg("episode"),
-          "The workcell of this episode of a campaign: objects moved as the file's `vary` says.")
-      .def(pickling<Workcell>())
-      .def("__repr__", [](const Workcell& w) {
-        const std::size_t of = w.cell->given_arm() == 0u ? 1 : 0;
-        return formatted("<Workcell of '%s' and '%s', %zu waypoints>", w.cell->arms[0].name.c_str(),
-                         w.cell->arms[1].name.c_str(), w.cell->arms[of].path().waypoints.size());
-      });
-  m.def(
-      "load_workcell",
-      [](const std::filesystem::path& file) { return shared(io::load_workcell(file)); },
-      py::arg("file"), "A problem file with `arms`, docs/formats.md. Raises InputError.");
 }
 
 void bind_plan(py::module_& m) {
@@ -414,10 +276,10 @@ void bind_check(py::module_& m) {
       });
 }
 
-AdviceOnWorkcell advise(const WorkcellOrFile& of, const WorkcellPlan& plan, double timeout) {
+AdviceOnWorkcell advise(const ProblemOrFile& of, const WorkcellPlan& plan, double timeout) {
   if (!(timeout > 0))
     throw py::value_error("timeout: not a positive number: allowed are values above 0");
-  const auto cell = to_core(of);
+  const auto cell = two_arms_of(of);
   return interruptible([&](const std::stop_token& stop) {
     PlanOptions options;
     options.timeout_s = timeout;
@@ -477,20 +339,15 @@ void bind_advice(py::module_& m) {
           "Name of an arm that has no path by itself -> what would help it by itself, a list of "
           "Advice.")
       .def("__str__", [](const AdviceOnWorkcell& a) { return advice_text(a); });
-  m.def("advise_workcell", &advise, py::arg("workcell").none(false), py::arg("plan").none(false),
-        py::kw_only(), py::arg("timeout") = 1.0,
-        "Finds changes that would help a workcell that has no plan, each planned alone with both "
-        "arms: AdviceOnWorkcell, empty where there is a plan.\n\n"
-        "workcell: the Workcell, or the name of its file. plan: its WorkcellPlan. timeout: s, for "
-        "all of them. Raises InputError.");
+  m.def("_advise_two_arms", &advise);
 }
 
 }  // namespace
 
-std::shared_ptr<const swivel::Problem> to_core(const WorkcellOrFile& cell) {
-  if (const auto* made = std::get_if<const Workcell*>(&cell)) return (*made)->cell;
-  return std::make_shared<const swivel::Problem>(
-      io::load_workcell(std::get<std::filesystem::path>(cell)));
+std::shared_ptr<const swivel::Problem> two_arms_of(const ProblemOrFile& of) {
+  auto cell = std::make_shared<const swivel::Problem>(to_core(of));
+  if (cell->arms.size() != 2) throw InvalidArgument("problem: has one arm: allowed are two arms");
+  return cell;
 }
 
 io::WorkcellRows rows_of(const py::dict& rows, const std::array<std::string, 2>& names) {
@@ -508,11 +365,11 @@ io::WorkcellRows rows_of(const py::dict& rows, const std::array<std::string, 2>&
   return all;
 }
 
-swivel::Problem completed(const WorkcellPlan& plan, const Workcell* given) {
+swivel::Problem completed(const WorkcellPlan& plan, const Problem* given) {
   if (given == nullptr && !plan.cell)
     throw py::value_error(
         "workcell: a plan that was unpickled has none: allowed is the workcell that was planned");
-  const swivel::Problem& cell = given != nullptr ? *given->cell : *plan.cell;
+  const swivel::Problem& cell = given != nullptr ? *given->two : *plan.cell;
   swivel::Problem whole = plan.timing ? with_motion_defaults(cell) : cell;
   for (ArmTask& arm : whole.arms)
     if (plan.refined) keep_clearance_between_layers(arm.path().limits);
@@ -520,14 +377,13 @@ swivel::Problem completed(const WorkcellPlan& plan, const Workcell* given) {
 }
 
 void bind_workcell(py::module_& m) {
-  bind_cell(m);
   bind_plan(m);
   bind_advice(m);
   bind_check(m);
   bind_workcell_motion(m);
   m.def(
-      "plan_workcell",
-      [](const WorkcellOrFile& workcell, const OrName<PlannerKind>& planner, int threads,
+      "_plan_two_arms",
+      [](const ProblemOrFile& workcell, const OrName<PlannerKind>& planner, int threads,
          std::optional<double> timeout, bool prove, bool evidence, const ProgressCallback& progress,
          std::optional<double> speed, std::optional<double> turn_speed, std::optional<double> rate,
          bool refine) {
@@ -539,25 +395,8 @@ void bind_workcell(py::module_& m) {
       py::arg("workcell").none(false), py::kw_only(), py::arg("planner") = "parallel",
       py::arg("threads") = 0, py::arg("timeout") = py::none(), py::arg("prove") = true,
       py::arg("evidence") = false, py::arg("progress") = py::none(), py::arg("speed") = py::none(),
-      py::arg("turn_speed") = py::none(), py::arg("rate") = py::none(), py::arg("refine") = false,
-      "Plans two arms that work at one time: the cheapest two paths without conflict. No plan is a "
-      "WorkcellPlan, not an exception. Other threads of Python run meanwhile; Ctrl-C stops it.\n\n"
-      "workcell: a Workcell, or the name of its file. planner: 'parallel' or 'lazy'. threads: 0 "
-      "for all cores. timeout: s, for everything. prove: prove the answer before it is returned, "
-      "as check_workcell() does. evidence: find all measures. progress(stage, "
-      "done, of): now and then. speed: m/s of the faster tool (a follower's on its leader's); "
-      "makes "
-      "a motion of both arms by one clock, with turn_speed (rad/s) and rate (samples a second, "
-      "default 250) if given. refine: move both paths off the lattices' nodes, one arm while the "
-      "other one moves as it does: cheaper and smoother, never dearer. Raises InputError, "
-      "InvalidArgument, and what progress raised.");
-  m.def("check_workcell", &check, py::arg("workcell").none(false), py::arg("rows").none(false),
-        "Proves the trajectories of two arms from the workcell alone, or says what is wrong with "
-        "them: WorkcellCheck.\n\n"
-        "workcell: a Workcell, or the name of its file. rows: a WorkcellPlan, a WorkcellMotion, "
-        "name -> Trajectory or Motion, or the name of a file of either, of any format. Raises "
-        "InputError and "
-        "InvalidArgument.");
+      py::arg("turn_speed") = py::none(), py::arg("rate") = py::none(), py::arg("refine") = false);
+  m.def("_check_two_arms", &check, py::arg("workcell"), py::arg("rows").none(false));
 }
 
 }  // namespace swivel::python

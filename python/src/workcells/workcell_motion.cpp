@@ -72,12 +72,12 @@ std::array<std::vector<TrajectoryRow>, 2> untimed_rows(const py::dict& given,
   return std::move(rows.rows);
 }
 
-WorkcellMotion time(const WorkcellOrFile& of, const WorkcellTrajectories& rows,
+WorkcellMotion time(const ProblemOrFile& of, const WorkcellTrajectories& rows,
                     std::optional<double> speed, std::optional<double> turn_speed, double rate,
                     bool refine, std::optional<double> timeout) {
   if (timeout && !(*timeout > 0))
     throw py::value_error("timeout: not a positive number: allowed are values above 0, or None");
-  const auto cell = to_core(of);
+  const auto cell = two_arms_of(of);
   const TimingOptions timing = timing_of(*cell, speed, turn_speed, rate);
   WorkcellMotion made{.names = {cell->arms[0].name, cell->arms[1].name},
                       .frame = cell->arms[0].base_link};
@@ -180,18 +180,9 @@ void bind_workcell_motion(py::module_& m) {
            "ValueError where there is none.")
       .def("__repr__",
            [](const WorkcellMotion& x) { return "<WorkcellMotion " + words_of(x) + ">"; });
-  m.def("time_workcell", &time, py::arg("workcell").none(false), py::arg("rows").none(false),
-        py::kw_only(), py::arg("speed") = py::none(), py::arg("turn_speed") = py::none(),
-        py::arg("rate") = TimingOptions().rate, py::arg("refine") = false,
-        py::arg("timeout") = py::none(),
-        "Makes trajectories of two arms one motion in time, and proves it, as `swivel time "
-        "WORKCELL` does: WorkcellMotion.\n\n"
-        "workcell: a Workcell, or the name of its file. rows: a WorkcellPlan, name -> Trajectory, "
-        "or the name of a file of a trajectory or a motion, whose times are left aside. speed: m/s "
-        "of the faster tool; without it that of the "
-        "workcell's limits holds. turn_speed: rad/s. rate: samples a second. refine: refine both "
-        "trajectories first. timeout: s, or None. Raises InputError, InvalidArgument and "
-        "TimeoutError.");
+  m.def("_time_two_arms", &time, py::arg("workcell"), py::arg("rows").none(false), py::kw_only(),
+        py::arg("speed"), py::arg("turn_speed"), py::arg("rate"), py::arg("refine"),
+        py::arg("timeout"));
 }
 
 }  // namespace swivel::python

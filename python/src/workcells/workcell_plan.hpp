@@ -9,7 +9,7 @@
 #include <variant>
 
 #include "bindings.hpp"
-#include "job.hpp"
+#include "problem.hpp"
 #include "results.hpp"
 #include "swivel/core/problem/problem.hpp"
 #include "swivel/io/workcells/workcell_csv.hpp"
@@ -27,7 +27,7 @@ struct WorkcellPlan {
 
 /// Returns the workcell that a plan is of as it was planned, with what motions and refinements
 /// need: `given`, or the one that the plan keeps. Throws ValueError if there is none.
-[[nodiscard]] swivel::Problem completed(const WorkcellPlan& plan, const Workcell* given);
+[[nodiscard]] swivel::Problem completed(const WorkcellPlan& plan, const Problem* given);
 
 /// The motion of both arms in time, or why there is none.
 struct WorkcellMotion {
@@ -46,9 +46,9 @@ struct WorkcellMotion {
   void save(const std::filesystem::path& file) const;
 };
 
-/// A workcell, or the name of its file.
-using WorkcellOrFile = std::variant<const Workcell*, std::filesystem::path>;
-[[nodiscard]] std::shared_ptr<const swivel::Problem> to_core(const WorkcellOrFile& cell);
+/// Returns a problem of two arms. Throws as to_core() does, and InvalidArgument for another
+/// problem.
+[[nodiscard]] std::shared_ptr<const swivel::Problem> two_arms_of(const ProblemOrFile& cell);
 
 using TrajectoriesByName = Typed<"dict[str, Trajectory]", py::dict>;
 /// The trajectories of both arms: a plan, name -> Trajectory, or the name of a CSV file.

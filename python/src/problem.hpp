@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Problems as Python holds them.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "bindings.hpp"
+#include "swivel/core/problem/problem.hpp"
+
+namespace swivel::python {
+
+/// A stroke of a problem. What is unset is as the problem says, as in a problem file.
+struct Stroke {
+  std::string name;
+  std::vector<Waypoint> waypoints;
+  std::string frame;
+  std::optional<PathSmoothing> smooth;
+  bool reversible = false;
+  std::optional<Vector3d> approach, retract;
+  std::optional<double> process_speed, approach_speed;
+  std::vector<double> feed;
+  std::optional<Limits> limits;
+  std::optional<Resolution> resolution;
+  std::optional<Config> end;
+  bool closed = false;
+  bool operator==(const Stroke&) const = default;
+};
+
+/// The strokes of a problem: a list of Python's, which a user changes in place. Copies have strokes
+/// of their own. The interpreter's lock must be held when it is made, copied and destroyed.
+struct StrokeList {
+  std::optional<py::list> list;  ///< none where the problem has no strokes but one path
+
+  StrokeList() = default;
+  StrokeList(const StrokeList& other) {
+    if (other.list) set(other.all());
+  }
+  StrokeList(StrokeList&&) = default;
+  StrokeList& operator=(const StrokeList&) = delete;
+  StrokeList& operator=(StrokeList&&) = default;
+  ~StrokeList() = default;
+  /// Returns copies of the strokes. Throws TypeError for a thing in the list that is none.
+  [[nodiscard]] std::vector<Stroke> all() const;
+  void set(const std::vector<Stroke>& all);
+};
+
+/// A problem of any kind. The robot, scene, limits, resolution, cost and refinement of a problem
+/// with strokes are those of the base; of its task it has no more.
+struct Problem : PathProblem {
+  StrokeList strokes;
+  std::optional<Config> home;
+  StrokeOrder order = StrokeOrder::kGiven;
+  Vector3d approach = Vector3d::Zero(), retract = Vector3d::Zero();
+  std::optional<double> process_speed, approach_speed;
+  double rapid = 1;
+  std::optional<LiftOffs> lift;
+  /// The problem of two arms, which does not change; null where there is one. Of the base,
+  /// robot is that of the first arm then, and the rest is empty.
+  std::shared_ptr<const swivel::Problem> two;
+
+  Problem() = default;
+  explicit Problem(PathProblem path) : PathProblem(std::move(path)) {}
+};
+
+/// Returns where the tool stands before a stroke or after it, m in the tool frame, from a distance
+/// against the tool's z axis or a vector. Throws ValueError, with `what` as the argument's name.
+[[nodiscard]] Vector3d to_offset(py::handle source, const char* what);
+
+/// Returns a problem for the planner, and the other way round. Strokes that say what all strokes
+/// say get it from the problem. Throws as StrokeList::all() and, of strokes, swivel::validate() do.
+[[nodiscard]] swivel::Problem to_core(const Problem& problem);
+[[nodiscard]] Problem from_core(swivel::Problem core);
+/// Returns the problem of one path. Throws InvalidArgument, with `what` as what was asked for, for
+/// another problem.
+[[nodiscard]] const PathProblem& path_of(const Problem& problem, const char* what);
+
+/// A problem, or the name of its file.
+using ProblemOrFile = std::variant<const Problem*, std::filesystem::path>;
+/// Returns a problem for the planner. Throws as to_core() and io::load_problem() do.
+[[nodiscard]] swivel::Problem to_core(const ProblemOrFile& problem);
+
+/// Makes a problem of two arms, whose scene is that of the first that has a problem.
+using ArmsByName = Typed<"dict[str, Problem | tuple[Robot, Trajectory]]", py::dict>;
+[[nodiscard]] Problem problem_of_arms(const ArmsByName& arms,
+                                      const std::vector<std::array<std::string, 2>>& touch,
+                                      const std::vector<int>& at_rows);
+
+void bind_strokes(py::module_& m);
+void bind_whole_problem(py::module_& m);
+
+}  // namespace swivel::python
