@@ -59,7 +59,8 @@ for _name in __all__:
     elif hasattr(_thing, "__setstate__") and not issubclass(_thing, Exception):
         _thing.__reduce__ = lambda thing: (_restore, (type(thing), thing.__getstate__()))
 for _thing in (
-    TrajectoryRow, campaign, certificate, check_certificate, load_certificate, map_svg, place, report
+    TrajectoryRow, campaign, certificate, check_certificate, load_certificate, map_svg, place,
+    report
 ):
     _thing.__module__ = __name__
 _rows.extend()
@@ -191,8 +192,8 @@ def check(
 
     problem: a Problem, or the name of its file. rows: what plan() or time() returned, or the name
     of a file of a trajectory or a motion, of any format; of one path a Trajectory or a Motion, of
-    strokes a list of JobParts or a JobMotion, of two arms name -> Trajectory or name -> Motion, or a
-    WorkcellMotion. speed: m/s along all strokes, where a motion was made with it.
+    strokes a list of JobParts or a JobMotion, of two arms name -> Trajectory or name -> Motion, or
+    a WorkcellMotion. speed: m/s along all strokes, where a motion was made with it.
 
     Returns a Check of one path, a JobCheck of strokes, a WorkcellCheck of two arms. Raises
     InputError and InvalidArgument.

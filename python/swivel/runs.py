@@ -65,7 +65,8 @@ def place(
     Returns Placements in the order of their numbers; the rows are the same at any number of
     threads, workers and batches. Clearances, margins and speeds of a job's rows are those of its
     strokes, those of a workcell's the least of both arms. Rows have no trajectories:
-    plan(problem.placed(row.offset, base=True, hold=row.hold)) has that of a row. Raises InvalidArgument, InputError
+    plan(problem.placed(row.offset, base=True, hold=row.hold))
+    has that of a row. Raises InvalidArgument, InputError
     and TypeError; Ctrl-C raises KeyboardInterrupt, whose attribute `rows` is the Placements known
     so far.
     """

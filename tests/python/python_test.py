@@ -1642,7 +1642,8 @@ class Stubs(unittest.TestCase):
             "Trajectory.to_dataframe", "Motion.to_dataframe", "JobMotion.to_dataframe",
             "Trajectory.__array__", "Motion.__array__", "JobMotion.__array__", "Plan.report",
             "Plan.map_svg", "JobPlan.report", "WorkcellPlan.report", "report", "map_svg",
-            "campaign", "place", "compute_cartesian_path", "plan", "time", "advise", "load_trajectory"
+            "campaign", "place", "compute_cartesian_path", "plan", "time", "advise",
+            "load_trajectory"
         }
         count = 0
         for name, node in self.functions():
