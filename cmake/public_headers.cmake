@@ -34,6 +34,7 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/core/lattice/lattice_description.hpp
   swivel/core/lattice/problem_path.hpp
   swivel/core/answer/timed_path.hpp
+  swivel/core/answer/timed_text.hpp
   swivel/core/answer/motion.hpp
   swivel/core/study/campaign.hpp
   swivel/core/study/placement.hpp
@@ -76,7 +77,6 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/planner/workcell/time_workcell.hpp
   swivel/io/files/files.hpp
   swivel/io/io.hpp
-  swivel/io/jobs/job_trajectory.hpp
   swivel/io/meshes/mesh.hpp
   swivel/io/motions/motion.hpp
   swivel/io/motions/trajectory.hpp
@@ -85,8 +85,5 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/io/results/result.hpp
   swivel/io/robots/robot.hpp
   swivel/io/tables/campaign.hpp
-  swivel/io/workcells/workcell_csv.hpp
-  swivel/report/job_page.hpp
   swivel/report/lattice_map.hpp
-  swivel/report/page.hpp
-  swivel/report/workcell_page.hpp)
+  swivel/report/page.hpp)

@@ -24,8 +24,8 @@ Examples: [embedding](docs/guide/embedding.md#python).
 """
 # Headings, by the first name below each.
 HEADINGS = {
-    "Sphere": "Problems", "LeastMargin": "Answers", "Kinematics": "Planning", "JobPart": "Jobs",
-    "Workcell": "Two arms", "Certificate": "Certificates",
+    "Sphere": "Problems", "LeastMargin": "Answers", "Kinematics": "Planning",
+    "WorkcellCertificate": "Certificates",
     "Placement": "Many plans of one problem", "TrajectoryRow": "Functions that plan in one call"
 }
 

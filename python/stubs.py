@@ -34,8 +34,8 @@ ALIASES = {
     "_Check": "Callable[[_Array], ArrayLike]",
     "_MotionCheck": "Callable[[_Array, _Array], ArrayLike]",
     "_Progress": "Callable[[str, int, int], Any]",
-    "_Rows": "Plan | Trajectory | Motion | JobPlan | Sequence[JobPart] | JobMotion | WorkcellPlan"
-             " | WorkcellMotion | Mapping[str, Trajectory] | Mapping[str, Motion] | _File",
+    "_Rows": "Answer | Motion | Trajectory | Sequence[Part] | Mapping[str, Trajectory]"
+             " | Mapping[str, Motion] | _File",
     "_Criterion": 'Literal["clearance", "cost", "margin", "slide", "speed"]',
     # A coordinate of placements: a number, (from, to, step), or (from, to) for samples.
     "_Range": "float | tuple[float, float] | tuple[float, float, float]",
@@ -65,8 +65,9 @@ SIGNATURES = {
 BASES = {"TrajectoryRow": ["tuple[float, ...]"]}
 ARGUMENTS = {"Placements.best by": "_Criterion | Sequence[_Criterion]"}
 MAYBE = set(
-    """Plan.cost Plan.diagnosis Plan.refinement Plan.motion JobPlan.cost JobPlan.bound
-    JobPlan.bound_any JobPlan.gap JobPlan.motion JobRun.least_cost JobRun.cost JobRun.diagnosis
+    """Answer.cost Answer.diagnosis Answer.refinement Answer.motion Answer.bound Answer.bound_any
+    Answer.gap Answer.least_cost Arm.diagnosis Arm.refinement Arm.least_cost Run.least_cost Run.cost
+    Run.diagnosis
     Placement.cost Placement.clearance Placement.clearance_margin Placement.joint_margin
     Placement.slide_margin Placement.tool_speed Placement.failed_s Episode.cost Episode.failed_s
     Episode.tool_path_error_mm_mean Episode.tool_path_error_mm_max""".split()

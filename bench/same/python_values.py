@@ -5,6 +5,7 @@ it prints stays, so that it can be compared with what an earlier module printed.
 
 python_values.py KIND FILE   KIND is `path`, `job` or `workcell`"""
 import json
+import math
 import pathlib
 import sys
 
@@ -127,7 +128,9 @@ def job(file):
         "warnings",
     )
     found = {name: getattr(plan, name) for name in names}
-    found.update(parts=parts(plan.parts), partial=parts(plan.partial), csv=plan.to_csv())
+    if not plan.solved:
+        raise ValueError(f"the plan has no job: {plan.status}")
+    found.update(parts=parts(plan.parts), partial=parts(plan.partial_parts), csv=plan.to_csv())
     found["runs"] = [
         [
             run.stroke,
@@ -156,25 +159,25 @@ def job(file):
 def workcell(file):
     """The answer to a workcell."""
     plan = swivel.plan(file, planner="lazy", threads=1, speed=0.05, rate=25.0)
-    names = (
-        "status",
-        "solved",
-        "names",
-        "given",
-        "cost",
-        "bound",
-        "least_costs",
-        "decided_by",
-        "conflict",
-        "clearance",
-        "clearance_status",
-        "warnings",
-        "not_executable",
-    )
-    found = {name: getattr(plan, name) for name in names}
-    found["rows"] = {name: rows(value) for name, value in plan.trajectories.items()}
-    found["diagnoses"] = {name: diagnosis(plan.diagnosis(name)) for name in plan.names}
-    found["motions"] = {name: motion(value) for name, value in plan.motions.items()}
+    arms, timed = plan.arms, plan.motion
+    found = {
+        "status": plan.status,
+        "solved": plan.solved,
+        "names": list(arms),
+        "given": next((name for name, arm in arms.items() if arm.given), None),
+        "cost": plan.cost or 0.0,
+        "bound": math.inf if plan.bound is None else plan.bound,
+        "least_costs": [
+            math.inf if arm.least_cost is None else arm.least_cost for arm in arms.values()
+        ],
+    }
+    names = ("decided_by", "conflict", "clearance", "clearance_status", "warnings")
+    found.update({name: getattr(plan, name) for name in names})
+    found["not_executable"] = timed and timed.reason
+    found["rows"] = {name: rows(arm.trajectory) for name, arm in arms.items() if plan.solved}
+    found["diagnoses"] = {name: diagnosis(arm.diagnosis) for name, arm in arms.items()}
+    made = timed.arms if timed and timed.executable else {}
+    found["motions"] = {name: motion(value) for name, value in made.items()}
     if plan.solved:
         found["check"] = check(swivel.check(file, plan))
     return found

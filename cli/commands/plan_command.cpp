@@ -20,6 +20,7 @@
 #include "output/answer_output.hpp"
 #include "output/motion_output.hpp"
 #include "output/self_time_output.hpp"
+#include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/study/campaign.hpp"
@@ -27,10 +28,8 @@
 #include "swivel/io/robots/urdf_shapes.hpp"
 #include "swivel/planner/job/time_job.hpp"
 #include "swivel/planner/problem/problem_planner.hpp"
-#include "swivel/report/job_page.hpp"
 #include "swivel/report/lattice_map.hpp"
 #include "swivel/report/page.hpp"
-#include "swivel/report/workcell_page.hpp"
 #include "terminal/progress.hpp"
 #include "terminal/terminal.hpp"
 
@@ -225,24 +224,13 @@ io::AnswerExtras extras_of(const PlanFindings& found) {
 std::string page_of(const ProblemPlanner& planner, const PlanRequest& request,
                     const PlanFindings& found, const Budget& budget) {
   const Answer& answer = found.answer;
-  const ProblemView& view = planner.view();
   const Problem problem = executed_problem(planner.problem(), answer);
-  const std::string json = io::to_json(answer, problem, extras_of(found));
   const io::VisualRobot visual = io::load_visuals(*problem.arm().model);
   const PageWords words{request.arguments.episode.words(),
-                        whole_text(answer, problem, found.advice), visual.model.get(),
-                        visual.left_out};
-  const Motion* const motion = answer.timed();
-  if (problem.arms.size() == 2)
-    return to_workcell_page({planner.two_arms(), problem, answer, view, motion}, json, budget,
-                            words);
-  const ArmMotion* const of_arm = motion != nullptr ? &motion->arms.front() : nullptr;
-  if (!is_path(problem))
-    return to_job_page({planner.robot(), problem, answer, view, of_arm}, json, budget, words);
-  PageMotion shown;
-  if (answer.refined) shown.refined = &answer.arm().rows();
-  shown.motion = of_arm;
-  return to_page(view.runs.front(), *found.map, json, shown, budget, words);
+                        whole_text(answer, problem, found.advice ? &*found.advice : nullptr),
+                        visual.model.get(), visual.left_out};
+  return to_page(planner, answer, io::to_json(answer, problem, extras_of(found)),
+                 found.map ? &*found.map : nullptr, budget, words);
 }
 
 /// Makes the lattice map and the page, if they are asked for and the plan has a verdict. Adds a

@@ -84,10 +84,6 @@ std::vector<UnusedKey> unused_keys_of(const Robot& robot, const std::string& sou
   return unused_keys(chain, classify(chain, source));
 }
 
-std::string percent(double share) {
-  return formatted(share < 0.0995 ? "%.2g %%" : "%.0f %%", 100 * share);
-}
-
 std::string shortest(double value) {
   std::array<char, 32> digits{};
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};

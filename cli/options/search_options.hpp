@@ -45,8 +45,6 @@ struct SearchOptions : LatticeOptions {
 /// Returns the shortest digits that read back as the same number.
 [[nodiscard]] std::string shortest(double value);
 
-/// Returns a share as text such as "37 %" or "0.042 %"; it is never 0 for a share above 0.
-[[nodiscard]] std::string percent(double share);
 
 /// Returns a word quoted so that a POSIX shell reads it back.
 [[nodiscard]] std::string quoted(const std::string& word);

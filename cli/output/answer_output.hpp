@@ -9,11 +9,6 @@
 
 namespace swivel::cli {
 
-/// Returns an answer in full for people: verdict, advice, refinement and motion, but of one path
-/// the verdict and the advice alone. `problem` is executed_problem() of the answer.
-[[nodiscard]] std::string whole_text(const Answer& answer, const Problem& problem,
-                                     const std::optional<AnyAdvice>& advice);
-
 /// Prints an answer with the times and the work of its plan, its certificate, of a size in bytes,
 /// and its advice on standard output, and its warnings on standard error.
 void print_answer(const Answer& answer, const Problem& problem,

@@ -82,43 +82,6 @@ void require_table_names(const std::vector<std::string>& files, const std::strin
   for (const std::string& file : files) require_table_name("--out", file, what, instead);
 }
 
-void print_refined(const Refined& refined) {
-  if (refined.refined)
-    say("refined: cost %.6g before, %.6g now; joints bend by at most %.3g rad/m^2 before, %.3g "
-        "now\n",
-        refined.cost_before, refined.cost, refined.bend_before, refined.bend);
-  else
-    say("not refined: %s\n", refined.reason.c_str());
-}
-
-void print_refined_and_timed(const Answer& answer) {
-  if (answer.refinement) print_refined(answer.refinement->arms.front());
-  if (!answer.motion) return;
-  if (const auto& failure = answer.motion->failure) {
-    say("not executable: s = %.4f m: %s\n", failure->s, failure->reason.c_str());
-    return;
-  }
-  const io::JointNames& joint_names = answer.arm().joint_names;
-  const TimedPath& motion = answer.timed()->arms.front();
-  const TimedPath::Peak* most = &motion.peaks[0][0];
-  JointRate rate = JointRate::kSpeed;
-  for (const JointRate one : {JointRate::kSpeed, JointRate::kAcceleration, JointRate::kJerk})
-    for (const TimedPath::Peak& peak : motion.peaks[static_cast<std::size_t>(one)])
-      if (peak.ratio > most->ratio) most = &peak, rate = one;
-  say("motion: %.3f s at %g mm/s (%.3f s at that speed throughout), %zu samples at %g Hz, tool "
-      "within %.2g um of its path "
-      "between; %s of '%s' at %s of its limit, s = %.4f m",
-      motion.rows.back().t, 1e3 * motion.speed, motion.ideal, motion.rows.size(), motion.rate,
-      1e6 * motion.between_position, to_string(rate),
-      joint_names[static_cast<std::size_t>(most->joint)].c_str(), percent(most->ratio).c_str(),
-      most->s);
-  if (!motion.slow.empty())
-    say("; slower on %zu stretch%s", motion.slow.size(), motion.slow.size() == 1 ? "" : "es");
-  if (!motion.stops.empty())
-    say("; %zu stop%s", motion.stops.size(), motion.stops.size() == 1 ? "" : "s");
-  say("\n");
-}
-
 void warn_of(const Motion& motion) {
   for (const std::string& warning : motion.warnings)
     complain("swivel: warning: %s\n", warning.c_str());

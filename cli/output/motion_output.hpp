@@ -49,13 +49,6 @@ void require_motion_formats(const std::vector<std::string>& files);
 void require_table_names(const std::vector<std::string>& files, const std::string& what,
                          const std::string& instead);
 
-/// Prints what refining a path brought on standard output.
-void print_refined(const Refined& refined);
-
-/// Prints what became of the answer of one path: its refinement and its motion, a line for each, on
-/// standard output.
-void print_refined_and_timed(const Answer& answer);
-
 /// Prints the warnings of a motion on standard error.
 void warn_of(const Motion& motion);
 

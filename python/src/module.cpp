@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bindings.hpp"
-#include "interruptible.hpp"
-#include "job_results.hpp"
-#include "problem.hpp"
+#include "answers/answer.hpp"
+#include "base/interruptible.hpp"
+#include "problems/problem.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 
@@ -19,16 +18,19 @@ PYBIND11_MODULE(_swivel, m) {
   swivel::python::bind_problem(m);
   swivel::python::bind_strokes(m);
   swivel::python::bind_whole_problem(m);
-  swivel::python::bind_results(m);
+  swivel::python::bind_measures(m);
+  swivel::python::bind_rows(m);
+  swivel::python::bind_parts_of_answers(m);
+  swivel::python::bind_motion(m);
+  swivel::python::bind_answer(m);
+  swivel::python::bind_check(m);
+  swivel::python::bind_advice(m);
   swivel::python::bind_states(m);
   swivel::python::bind_planner(m);
-  swivel::python::bind_job_results(m);
-  swivel::python::bind_job_functions(m);
-  swivel::python::bind_workcell(m);
+  swivel::python::bind_functions(m);
   swivel::python::bind_drawings(m);
   swivel::python::bind_certificates(m);
   swivel::python::bind_runs(m);
-  swivel::python::bind_job_drawings(m);
   py::module_::import("atexit").attr("register")(
       py::cpp_function(&swivel::python::UnderWay::end_all));
 }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Keywords that all functions which plan have.
+// Keywords that functions which plan and time have.
 #pragma once
 #include <optional>
 
-#include "bindings.hpp"
+#include "base/bindings.hpp"
+#include "swivel/core/answer/timed_path.hpp"
+#include "swivel/core/problem/problem.hpp"
 #include "swivel/planner/plan/plan_options.hpp"
 
 namespace swivel::python {
@@ -17,5 +19,37 @@ namespace swivel::python {
 /// smooth, and seldom enough to cost nothing. It is empty for None. The Python object must outlive
 /// it. Throws TypeError for what cannot be called.
 [[nodiscard]] ProgressFunction to_progress(const py::object& progress);
+/// Returns seconds, or none for None. Throws ValueError unless they are positive.
+[[nodiscard]] std::optional<double> to_timeout(std::optional<double> timeout);
+
+/// What plan() is asked, as Python keywords.
+struct PlanKeywords {
+  py::object planner;
+  int threads = 0;
+  std::optional<double> timeout;
+  bool prove = true, evidence = false;
+  /// The caller's own functions of arrays of states; None where there is none.
+  py::object check, check_motions, cost;
+  py::object progress;
+  /// Returns the options, whose hooks call the functions. These must outlive them, and the
+  /// interpreter's lock must be held where the options are destroyed. Throws ValueError and
+  /// TypeError.
+  [[nodiscard]] PlanOptions options() const;
+  [[nodiscard]] bool has_own_functions() const {
+    return !check.is_none() || !check_motions.is_none() || !cost.is_none();
+  }
+};
+
+/// How a motion is asked for, as Python keywords.
+struct MotionKeywords {
+  std::optional<double> speed, turn_speed, rate, chord;
+  /// Returns the timing of a motion: where no speed is given at limits.tool_speed, the lower one of
+  /// two arms', and of strokes at the speed of each. Throws ValueError for numbers that are not
+  /// allowed, and where there is no speed.
+  [[nodiscard]] TimingOptions timing(const swivel::Problem& problem) const;
+  /// Returns the timing of a motion that plan() is asked for; none where it is not. Throws
+  /// ValueError as above, and for what is of motions where a speed must be given and is not.
+  [[nodiscard]] std::optional<TimingOptions> asked_timing(const swivel::Problem& problem) const;
+};
 
 }  // namespace swivel::python

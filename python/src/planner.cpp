@@ -3,14 +3,14 @@
 #include "swivel/planner/plan/planner.hpp"
 
 #include <atomic>
-#include <chrono>
 #include <optional>
+#include <variant>
 
-#include "bindings.hpp"
-#include "interruptible.hpp"
+#include "answers/answer.hpp"
+#include "answers/given.hpp"
+#include "base/interruptible.hpp"
 #include "plan_keywords.hpp"
-#include "problem.hpp"
-#include "results.hpp"
+#include "problems/problem.hpp"
 #include "states.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
@@ -26,146 +26,6 @@
 namespace swivel::python {
 
 namespace {
-
-std::string name_of(const py::object& function) {
-  const py::object name = py::getattr(function, "__name__", py::none());
-  return py::isinstance<py::str>(name)
-             ? name.cast<std::string>()
-             : py::type::of(function).attr("__name__").cast<std::string>();
-}
-
-/// Returns the answers of a Python function as an array with one number for each of `count` states.
-/// Throws ValueError for another shape or type.
-template <class Number>
-py::array_t<Number> answers_of(const py::object& answer, std::size_t count,
-                               const std::string& what) {
-  const py::array array = py::array::ensure(answer);
-  PyErr_Clear();
-  constexpr bool kLogical = std::is_same_v<Number, bool>;
-  const bool kind =
-      array && (kLogical ? array.dtype().kind() == 'b'
-                         : std::string("fiu").find(array.dtype().kind()) != std::string::npos);
-  if (!kind || array.ndim() != 1 || array.shape(0) != static_cast<py::ssize_t>(count))
-    throw py::value_error(what + " returned " +
-                          (array ? py::str(array.dtype()).cast<std::string>() + " of shape " +
-                                       py::str(array.attr("shape")).cast<std::string>()
-                                 : "no array") +
-                          ": allowed is " + (kLogical ? "bool" : "float64") + " of shape (" +
-                          std::to_string(count) + ",)");
-  return py::array_t<Number, py::array::c_style | py::array::forcecast>::ensure(array);
-}
-
-/// Returns a copy of states as an array, since a function may keep its argument.
-template <class Item>
-py::array_t<double> states_of(std::span<const Item> items, const Config& (*joints)(const Item&)) {
-  py::array_t<double> states(
-      {static_cast<py::ssize_t>(items.size()), static_cast<py::ssize_t>(kDof)});
-  double* out = states.mutable_data();
-  for (const Item& item : items) out = std::copy_n(joints(item).data(), kDof, out);
-  return states;
-}
-const Config& itself(const Config& q) {
-  return q;
-}
-
-/// A check by Python functions of arrays. The interpreter's lock must be held when it is made and
-/// destroyed.
-class ArrayCheck : public StateCheck {
- public:
-  ArrayCheck(py::object check, py::object motions)
-      : check_(std::move(check)), motions_(std::move(motions)) {
-    name_ = name_of(check_.is_none() ? motions_ : check_);
-  }
-  [[nodiscard]] std::string name() const override { return name_; }
-  void states(std::span<const Config> states, std::span<bool> allowed) override {
-    if (check_is_none()) return static_cast<void>(std::fill(allowed.begin(), allowed.end(), true));
-    const py::gil_scoped_acquire gil;
-    const auto answer =
-        answers_of<bool>(check_(states_of(states, itself)), states.size(), "check '" + name_ + "'");
-    std::copy_n(answer.data(), allowed.size(), allowed.begin());
-  }
-  [[nodiscard]] bool checks_motions() const override { return motions_.ptr() != Py_None; }
-  void motions(std::span<const Motion> motions, std::span<bool> allowed) override {
-    const py::gil_scoped_acquire gil;
-    const auto from =
-        states_of<Motion>(motions, [](const Motion& m) -> const Config& { return m.from; });
-    const auto to =
-        states_of<Motion>(motions, [](const Motion& m) -> const Config& { return m.to; });
-    const auto answer =
-        answers_of<bool>(motions_(from, to), motions.size(), "check_motions of '" + name_ + "'");
-    std::copy_n(answer.data(), allowed.size(), allowed.begin());
-  }
-
- private:
-  [[nodiscard]] bool check_is_none() const { return check_.ptr() == Py_None; }
-  py::object check_, motions_;
-  std::string name_;
-};
-
-class ArrayCost : public StateCost {
- public:
-  explicit ArrayCost(py::object cost) : cost_(std::move(cost)), name_(name_of(cost_)) {}
-  [[nodiscard]] std::string name() const override { return name_; }
-  void costs(std::span<const Config> states, std::span<double> costs) override {
-    const py::gil_scoped_acquire gil;
-    const auto answer =
-        answers_of<double>(cost_(states_of(states, itself)), states.size(), "cost '" + name_ + "'");
-    std::copy_n(answer.data(), costs.size(), costs.begin());
-  }
-
- private:
-  py::object cost_;
-  std::string name_;
-};
-
-/// Throws TypeError for what is neither None nor can be called.
-void require_function(const py::object& function, const char* name) {
-  if (!function.is_none() && PyCallable_Check(function.ptr()) == 0)
-    throw py::type_error(std::string(name) + ": not callable: allowed is a function, or None");
-}
-
-/// The options of a plan as Python keywords.
-struct PlanKeywords {
-  py::object planner;
-  int threads = 0;
-  std::optional<double> timeout;
-  bool prove = true, evidence = false;
-  py::object check, check_motions, cost, progress;
-  [[nodiscard]] PlanOptions options() const {
-    PlanOptions options = to_plan_options(planner, threads, timeout, prove);
-    if (evidence) options.evidence = Evidence::all();
-    require_function(check, "check");
-    require_function(check_motions, "check_motions");
-    require_function(cost, "cost");
-    if (!check.is_none() || !check_motions.is_none())
-      options.hooks.check = std::make_shared<ArrayCheck>(check, check_motions);
-    if (!cost.is_none()) options.hooks.cost = std::make_shared<ArrayCost>(cost);
-    options.progress = to_progress(progress);
-    return options;
-  }
-};
-
-TimingOptions timing_of(const PathProblem& problem, std::optional<double> speed,
-                        std::optional<double> turn_speed, double rate,
-                        std::optional<double> chord) {
-  TimingOptions options;
-  if (!speed && !problem.limits.tool_speed)
-    throw py::value_error(
-        "speed: is not given, nor limits.tool_speed: allowed is the speed of the tool in m/s");
-  options.speed = speed.value_or(problem.limits.tool_speed.value_or(0));
-  options.turn_speed = turn_speed ? turn_speed : problem.limits.tool_turn_speed;
-  options.rate = rate;
-  if (!(options.speed > 0))
-    throw py::value_error("speed: not a positive number: allowed are values above 0, m/s");
-  if (options.turn_speed && !(*options.turn_speed > 0))
-    throw py::value_error("turn_speed: not a positive number: allowed are values above 0, rad/s");
-  options.chord = chord;
-  if (chord && !(*chord > 0))
-    throw py::value_error("chord: not a positive number: allowed are values above 0, m");
-  if (!(rate > 0 && rate <= 1e5))
-    throw py::value_error("rate: allowed are numbers > 0, at most 100000");
-  return options;
-}
 
 PathProblem problem_of(const Robot& robot, const std::optional<Task>& task,
                        const SceneObjects& scene) {
@@ -199,8 +59,7 @@ class SharedPlanner {
   template <class Work>
   auto prepared(const Work& work, std::optional<double> timeout = {}) {
     const Use use(*this);
-    if (timeout && !(*timeout > 0))
-      throw py::value_error("timeout: not a positive number: allowed are values above 0, or None");
+    static_cast<void>(to_timeout(timeout));
     planner_.set_task(task_);
     return interruptible([&](const std::stop_token& stop) {
       const Budget budget(timeout, nullptr, stop);
@@ -243,49 +102,40 @@ class SharedPlanner {
           return problem_path(problem, robot.arm().chain, budget).size();
         });
   }
-  Plan plan(const PlanKeywords& keywords, bool refined, std::optional<double> speed,
-            std::optional<double> turn_speed, std::optional<double> rate,
-            std::optional<double> chord) {
+  Answer plan(const PlanKeywords& keywords, bool refined, const MotionKeywords& motion) {
     const Use use(*this);
-    Plan plan;
     PlanOptions options = keywords.options();
     planner_.set_task(task_);
-    if (!speed && (turn_speed || rate || chord))
-      throw py::value_error(std::string(turn_speed ? "turn_speed"
-                                        : rate     ? "rate"
-                                                   : "chord") +
-                            ": is of motions: allowed with speed");
-    if (speed)
-      plan.timing = timing_of(planner_.problem(), speed, turn_speed,
-                              rate.value_or(TimingOptions().rate), chord);
-    if (plan.timing) {
+    const swivel::Problem given = one_path(planner_.problem());
+    const MotionRequest asked{refined, motion.asked_timing(given)};
+    if (asked.timing) {
       planner_.set_task(with_motion_defaults(planner_.problem()));
     } else if (refined) {
       Task task = task_;
       keep_clearance_between_layers(task.limits);
       planner_.set_task(task);
     }
-    plan.frame = planner_.problem().base_link;
-    plan.refined = refined;
-    plan.own_functions =
-        !keywords.check.is_none() || !keywords.check_motions.is_none() || !keywords.cost.is_none();
-    plan.problem = std::make_shared<const PathProblem>(planner_.problem());
-    plan.plan = std::make_shared<const MotionPlan>(interruptible([&](const std::stop_token& stop) {
-      options.stop = stop;
-      return plan_motion(planner_, options, refined, plan.timing);
-    }));
-    return plan;
+    Answer answer = made_answer(
+        interruptible([&](const std::stop_token& stop) {
+          options.stop = stop;
+          return answer_of(plan_motion(planner_, options, refined, asked.timing), asked.timing);
+        }),
+        given, asked);
+    answer.own_functions = keywords.has_own_functions();
+    return answer;
   }
-  Check check(const Trajectory& trajectory) {
+  Check check(const std::variant<Answer, python::Motion, Trajectory>& rows) {
+    const GivenAnswer given =
+        std::visit([&](const auto& one) { return given_answer(one_path(problem()), one); }, rows);
+    const GivenArm& arm = given.arms.front();
     return prepared([&](const PreparedRobot& robot, const PathProblem& problem, const Budget&) {
-      return Check{check_trajectory(robot, problem, *trajectory.rows), trajectory.joint_names};
-    });
-  }
-  Check check(const Motion& motion) {
-    const auto rows = motion.rows();
-    static_cast<void>(motion.path());
-    return prepared([&](const PreparedRobot& robot, const PathProblem& problem, const Budget&) {
-      return Check{check_motion(robot, problem, *rows), motion.joint_names};
+      Check check;
+      const CheckResult& run = check.result.runs.emplace_back(
+          arm.motion ? check_motion(robot, problem, arm.motion->rows)
+                     : check_trajectory(robot, problem, arm.parts.front().rows));
+      check.result.passed = run.passed;
+      check.result.cost = run.cost;
+      return check;
     });
   }
   Measures measure(const Trajectory& trajectory) {
@@ -310,31 +160,30 @@ class SharedPlanner {
         timeout);
     return {std::make_shared<const Refined>(std::move(refined)), trajectory.joint_names};
   }
-  python::Motion time(const Trajectory& trajectory, std::optional<double> speed,
-                      std::optional<double> turn_speed, double rate, std::optional<double> chord,
+  python::Motion time(const Trajectory& trajectory, const MotionKeywords& keywords,
                       std::optional<double> timeout) {
-    const PathProblem held = problem();
-    const TimingOptions options = timing_of(held, speed, turn_speed, rate, chord);
-    TimingResult timing = prepared(
-        [&](const PreparedRobot& robot, const PathProblem& problem,
-            const Budget& budget) -> TimingResult {
-          return time_trajectory(robot, problem, *trajectory.rows, options, budget);
+    const swivel::Problem given = one_path(problem());
+    const MotionRequest asked{.timing = keywords.timing(given)};
+    MotionPlan timed;
+    timed.result.joint_names = trajectory.joint_names;
+    timed.motion = prepared(
+        [&](const PreparedRobot& robot, const PathProblem& problem, const Budget& budget) {
+          return time_trajectory(robot, problem, *trajectory.rows, *asked.timing, budget);
         },
         timeout);
-    return {std::make_shared<const TimingResult>(std::move(timing)), trajectory.joint_names,
-            held.base_link};
+    return {made_answer(answer_of(std::move(timed), asked.timing), given, asked)};
   }
-  std::vector<Advice> advise(const Plan& plan, double timeout) {
+  AdviceList advise(const Answer& answer, double timeout) {
     const Use use(*this);
-    if (!(timeout > 0))
-      throw py::value_error("timeout: not a positive number: allowed are values above 0");
+    require_path(answer, "advise");
+    static_cast<void>(to_timeout(timeout));
     planner_.set_task(task_);
-    return interruptible([&](const std::stop_token& stop) {
+    return {interruptible([&](const std::stop_token& stop) {
       PlanOptions options;
       options.timeout_s = timeout;
       options.stop = stop;
-      return swivel::advise(planner_, plan.result(), options);
-    });
+      return swivel::advise(planner_, answer.found->arm().run(), options);
+    })};
   }
 
  private:
@@ -344,34 +193,6 @@ class SharedPlanner {
 };
 
 }  // namespace
-
-PlanOptions to_plan_options(const py::object& planner, int threads, std::optional<double> timeout,
-                            bool prove) {
-  PlanOptions options;
-  options.check = prove;
-  options.planner = to_enum<PlannerKind>(planner);
-  constexpr int kMostThreads = 1024;
-  if (threads < 0 || threads > kMostThreads)
-    throw py::value_error("threads: " + std::to_string(threads) +
-                          ": allowed are 0 (all cores) to " + std::to_string(kMostThreads));
-  options.threads = threads;
-  if (timeout && !(*timeout > 0))
-    throw py::value_error("timeout: not a positive number: allowed are values above 0, or None");
-  options.timeout_s = timeout;
-  return options;
-}
-
-ProgressFunction to_progress(const py::object& progress) {
-  require_function(progress, "progress");
-  if (progress.is_none()) return {};
-  using Clock = std::chrono::steady_clock;
-  return [tell = progress.ptr(), last = Clock::time_point()](const Progress& now) mutable {
-    if (Clock::now() - last < std::chrono::milliseconds(20)) return;
-    last = Clock::now();
-    const py::gil_scoped_acquire gil;
-    py::reinterpret_borrow<py::object>(tell)(to_string(now.stage), now.done, now.of);
-  };
-}
 
 void bind_planner(py::module_& m) {
   bind_enum<PlannerKind>(
@@ -470,7 +291,7 @@ void bind_planner(py::module_& m) {
                                         std::move(check_motions),
                                         std::move(cost),
                                         std::move(progress)};
-            return self.plan(keywords, refine, speed, turn_speed, rate, chord);
+            return self.plan(keywords, refine, {speed, turn_speed, rate, chord});
           },
           py::kw_only(), py::arg("planner") = "parallel", py::arg("threads") = 0,
           py::arg("timeout") = py::none(), py::arg("prove") = true, py::arg("evidence") = false,
@@ -478,7 +299,7 @@ void bind_planner(py::module_& m) {
           py::arg("cost") = py::none(), py::arg("progress") = py::none(), py::arg("refine") = false,
           py::arg("speed") = py::none(), py::arg("turn_speed") = py::none(),
           py::arg("rate") = py::none(), py::arg("chord") = py::none(),
-          "Plans; no path is a Plan, not an exception. Other threads of Python run meanwhile; "
+          "Plans; no path is an Answer, not an exception. Other threads of Python run meanwhile; "
           "Ctrl-C stops it.\n"
           "\n"
           "planner: PlannerKind or its name. threads: 0 for all cores. timeout: s, for everything. "
@@ -502,11 +323,9 @@ void bind_planner(py::module_& m) {
           "a\n"
           "motion in time. Both keep the whole clearance between layers.\n"
           "Raises InputError, InvalidArgument, and what a function raised.")
-      .def("check", py::overload_cast<const Trajectory&>(&SharedPlanner::check),
-           py::arg("trajectory"),
-           "Proves a trajectory, or a motion in time, from the problem alone, or says what is "
-           "wrong with it: a Check.")
-      .def("check", py::overload_cast<const Motion&>(&SharedPlanner::check), py::arg("trajectory"))
+      .def("check", &SharedPlanner::check, py::arg("rows"),
+           "Proves rows, or a motion in time, from the problem alone, or says what is wrong with "
+           "them: a Check.")
       .def("measure", &SharedPlanner::measure, py::arg("trajectory"),
            "What plan(evidence=True) says of its own trajectory, of any with a row at each layer: "
            "Measures.")
@@ -518,21 +337,26 @@ void bind_planner(py::module_& m) {
            py::arg("timeout") = py::none(),
            "Moves the arm angles of a trajectory that plan() found off the grid: Refined. Raises "
            "TimeoutError.")
-      .def("time", &SharedPlanner::time, py::arg("trajectory"), py::kw_only(),
-           py::arg("speed") = py::none(), py::arg("turn_speed") = py::none(),
-           py::arg("rate") = TimingOptions().rate, py::arg("chord") = py::none(),
-           py::arg("timeout") = py::none(),
-           "Makes a trajectory a motion in time: Motion. speed: m/s, of the tool; default "
-           "limits.tool_speed. turn_speed: rad/s. "
-           "rate:\n"
-           "samples a second. chord: m; slower where the tool would leave its path by more between "
-           "samples. Raises TimeoutError.")
+      .def(
+          "time",
+          [](SharedPlanner& self, const Trajectory& trajectory, std::optional<double> speed,
+             std::optional<double> turn_speed, double rate, std::optional<double> chord,
+             std::optional<double> timeout) {
+            return self.time(trajectory, {speed, turn_speed, rate, chord}, timeout);
+          },
+          py::arg("trajectory"), py::kw_only(), py::arg("speed") = py::none(),
+          py::arg("turn_speed") = py::none(), py::arg("rate") = TimingOptions().rate,
+          py::arg("chord") = py::none(), py::arg("timeout") = py::none(),
+          "Makes a trajectory a motion in time: Motion. speed: m/s, of the tool; default "
+          "limits.tool_speed. turn_speed: rad/s. "
+          "rate:\n"
+          "samples a second. chord: m; slower where the tool would leave its path by more between "
+          "samples. Raises TimeoutError.")
       .def("_rows_of_path", &SharedPlanner::rows_of_path)
       .def("advise", &SharedPlanner::advise, py::arg("plan"), py::kw_only(),
            py::arg("timeout") = 1.0,
            "What would help a problem that has no path, found by planning it for so many seconds: "
-           "a list of Advice, what helps "
-           "first.")
+           "an AdviceList.")
       .def("__repr__", [](SharedPlanner& self) {
         if (self.in_use()) return std::string("<Planner, at work>");
         const PathProblem problem = self.problem();

@@ -10,10 +10,10 @@
 #include <tuple>
 #include <variant>
 
-#include "archive.hpp"
-#include "interruptible.hpp"
+#include "base/archive.hpp"
+#include "base/interruptible.hpp"
 #include "plan_keywords.hpp"
-#include "problem.hpp"
+#include "problems/problem.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/study/grid_refinement.hpp"
@@ -565,17 +565,6 @@ void bind_parts(py::module_& m) {
 }
 
 }  // namespace
-
-Movable to_movable(const std::optional<std::string>& object, bool path, bool base, bool only_held,
-                   const std::optional<std::string>& arm) {
-  if (arm && !path) throw InvalidArgument("arm: whose path is moved: allowed with path=True");
-  if (only_held && !object && !path && !base) return {Movable::Kind::kNothing, ""};
-  if (static_cast<int>(object.has_value()) + static_cast<int>(path) + static_cast<int>(base) != 1)
-    throw InvalidArgument(
-        "object, path, base: what is to be moved: allowed is exactly one of the three");
-  if (object) return {Movable::Kind::kObject, *object};
-  return {path ? Movable::Kind::kPath : Movable::Kind::kBase, {}, arm.value_or("")};
-}
 
 void bind_runs(py::module_& m) {
   bind_tables(m);

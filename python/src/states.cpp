@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "bindings.hpp"
+#include "base/bindings.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/kinematics/closed_form/closed_form.hpp"
 #include "swivel/core/kinematics/srs/arm_angle.hpp"

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "bindings.hpp"
+#include "base/bindings.hpp"
 #include "swivel/planner/measure/state_clearance.hpp"
 
 namespace swivel::python {

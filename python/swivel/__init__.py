@@ -157,7 +157,7 @@ def plan(
     turn_speed: float | None = None,
     rate: float | None = None,
     chord: float | None = None,
-) -> Any:
+) -> Answer:
     """Plans one problem, once.
 
     problem: a Problem, or the name of its file. The others are those of Planner.plan(); check,
@@ -166,52 +166,34 @@ def plan(
     time; speed holds instead of their speeds and feeds. Two arms have one with speed, that of the
     faster tool (a follower's on its leader's), by one clock.
 
-    Returns a Plan of one path, a JobPlan of strokes, a WorkcellPlan of two arms; no answer is one,
-    not an exception. Raises InputError and InvalidArgument for a problem that makes no sense, and
-    what a function raised.
+    Returns an Answer; no answer is one, not an exception. Raises InputError and InvalidArgument for
+    a problem that makes no sense, and what a function raised.
     """
     problem = _loaded(problem)
-    shared = dict(
-        planner=planner, threads=threads, timeout=timeout, prove=prove, evidence=evidence,
-        progress=progress, speed=speed, turn_speed=turn_speed, rate=rate
-    )
-    own = dict(check=check, check_motions=check_motions, cost=cost, chord=chord)
-    _refuse(problem, ("one path",), **own)
+    own = dict(check=check, check_motions=check_motions, cost=cost)
+    _refuse(problem, ("one path",), **own, chord=chord)
     _refuse(problem, ("one path", "two arms"), refine=refine)
-    if problem._kind() == "strokes":
-        return _swivel._plan_strokes(problem, **shared)
-    if problem._kind() == "two arms":
-        return _swivel._plan_two_arms(problem, refine=refine, **shared)
-    return Planner(problem).plan(refine=refine, **own, **shared)  # noqa: F405
+    return _swivel._plan(
+        problem, planner, threads, timeout, prove, evidence, *own.values(), progress, refine,
+        speed, turn_speed, rate, chord
+    )
 
 
 def check(
     problem: Problem | _File, rows: _Rows, *, speed: float | None = None
-) -> Check | JobCheck | WorkcellCheck:
+) -> Check:
     """Proves rows from the problem alone, or says what is wrong with them.
 
     problem: a Problem, or the name of its file. rows: what plan() or time() returned, or the name
-    of a file of a trajectory or a motion, of any format; of one path a Trajectory or a Motion, of
-    strokes a list of JobParts or a JobMotion, of two arms name -> Trajectory or name -> Motion, or
-    a WorkcellMotion. speed: m/s along all strokes, where a motion was made with it.
+    of a file of a trajectory or a motion, of any format; of one path also a Trajectory, of strokes
+    a list of Parts, of two arms name -> Trajectory or name -> Motion. speed: m/s along all strokes,
+    where a motion was made with it.
 
-    Returns a Check of one path, a JobCheck of strokes, a WorkcellCheck of two arms. Raises
-    InputError and InvalidArgument.
+    Returns a Check. Raises InputError and InvalidArgument.
     """
     problem = _loaded(problem)
     _refuse(problem, ("strokes",), speed=speed)
-    if problem._kind() == "strokes":
-        return _swivel._check_strokes(problem, rows, speed=speed)
-    if problem._kind() == "two arms":
-        return _swivel._check_two_arms(problem, rows)
-    return Planner(problem).check(_rows_of_path(problem, rows))  # noqa: F405
-
-
-def _rows_of_path(problem, rows):
-    """Returns the Trajectory or Motion that is given as a plan, or as a file."""
-    if isinstance(rows, Plan):  # noqa: F405
-        return rows.trajectory
-    return load_trajectory(rows, problem=problem) if isinstance(rows, (str, _os.PathLike)) else rows
+    return _swivel._check(problem, rows, speed)
 
 
 def load_trajectory(
@@ -219,20 +201,16 @@ def load_trajectory(
 ) -> Any:
     """Loads rows from any file that `swivel check` reads: CSV, JSON, YAML or MCAP.
 
-    joint_names: those of the file; None: those of the problem. problem: a Problem of one arm, or
-    the name of its file, from which what the file does not state (s, phi, branch, roll, of motions
-    speeds and accelerations) is worked out; needed for strokes.
+    problem: a Problem, or the name of its file, from which what the file does not state (s, phi,
+    branch, roll, of motions speeds and accelerations) is worked out; needed for strokes and two
+    arms. joint_names: those of the file; None: those of the problem.
 
-    Returns a Trajectory, or a Motion where the file has times; of strokes a list of JobParts, or a
-    JobMotion. Raises InputError.
+    Returns a Motion where the file has times, else a Trajectory, of strokes a list of Parts, of two
+    arms name -> Trajectory. Raises InputError.
     """
-    problem = None if problem is None else _loaded(problem)
-    if problem is not None:
-        _refuse(problem, ("one path", "strokes"), load_trajectory=file)
-        if problem._kind() == "strokes":
-            return _swivel._load_parts(file, problem)
-        joint_names = problem.joint_names if joint_names is None else joint_names
-    return _swivel._load_trajectory(file, list(joint_names or ()), problem)
+    if problem is None:
+        return _swivel._load_stated(file, list(joint_names or ()))
+    return _swivel._load_trajectory(file, _loaded(problem), list(joint_names or ()))
 
 
 def measure(problem: Problem | _File, trajectory: Trajectory) -> Measures:
@@ -258,46 +236,32 @@ def time(
     problem: Problem | _File, rows: _Rows, *, speed: float | None = None,
     turn_speed: float | None = None, rate: float = 250.0, chord: float | None = None,
     refine: bool = False, timeout: float | None = None
-) -> Any:
+) -> Motion:
     """Makes rows a motion in time, and proves it.
 
-    problem: a Problem, or the name of its file. rows: as of check(); of strokes and two arms the
-    times of a motion are left aside. speed: m/s of the tool; without it those of the problem's
-    strokes and limits hold. turn_speed: rad/s. rate: samples a second. chord: m, of one path.
-    refine: refine the rows of two arms first. timeout: s, or None. plan() with a speed plans rows
-    that are sure to keep what motions keep.
+    problem: a Problem, or the name of its file. rows: as of check(); the times of a motion are left
+    aside. speed: m/s of the tool; without it those of the problem's strokes and limits hold.
+    turn_speed: rad/s. rate: samples a second. chord: m, of one path. refine: refine the rows first;
+    not of strokes. timeout: s, or None. plan() with a speed plans rows that are sure to keep what
+    motions keep.
 
-    Returns a Motion of one path, a JobMotion of strokes, a WorkcellMotion of two arms. Raises
-    InputError, InvalidArgument and TimeoutError.
+    Returns a Motion. Raises InputError, InvalidArgument and TimeoutError.
     """
     problem = _loaded(problem)
-    shared = dict(speed=speed, turn_speed=turn_speed, rate=rate, timeout=timeout)
     _refuse(problem, ("one path",), chord=chord)
-    _refuse(problem, ("two arms",), refine=refine)
-    if problem._kind() == "strokes":
-        return _swivel._time_strokes(problem, rows, **shared)
-    if problem._kind() == "two arms":
-        return _swivel._time_two_arms(problem, rows, refine=refine, **shared)
-    return Planner(problem).time(  # noqa: F405
-        _rows_of_path(problem, rows), chord=chord, **shared
-    )
+    _refuse(problem, ("one path", "two arms"), refine=refine)
+    return _swivel._time(problem, rows, speed, turn_speed, rate, chord, refine, timeout)
 
 
-def advise(
-    problem: Problem | _File, plan: Plan | WorkcellPlan, *, timeout: float = 1.0
-) -> Any:
+def advise(problem: Problem | _File, plan: Answer, *, timeout: float = 1.0) -> AdviceList:
     """Finds changes that would help a problem that has no answer, each planned alone.
 
-    problem: a Problem of one path or two arms, or the name of its file. plan: what plan() returned.
-    timeout: s, for all of them.
+    problem: a Problem, or the name of its file. plan: what plan() returned. timeout: s, for all of
+    them.
 
-    Returns a list of Advice of one path, what helps first; an AdviceOnWorkcell of two arms.
+    Returns an AdviceList.
     """
-    problem = _loaded(problem)
-    _refuse(problem, ("one path", "two arms"), advise=problem)
-    if problem._kind() == "two arms":
-        return _swivel._advise_two_arms(problem, plan, timeout)
-    return Planner(problem).advise(plan, timeout=timeout)  # noqa: F405
+    return _swivel._advise(_loaded(problem), plan, timeout)
 
 
 def compute_cartesian_path(

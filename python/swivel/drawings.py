@@ -39,38 +39,36 @@ def _written(text, file):
 
 
 def report(
-    problem: Problem | _File | None, plan: Plan | JobPlan | WorkcellPlan,
-    file: _File | None = None
+    problem: Problem | _File | None, answer: Answer, file: _File | None = None
 ) -> str | Any:
-    """Makes the page of a plan: what `swivel plan --report` writes, one HTML file.
+    """Makes the page of an answer: what `swivel plan --report` writes, one HTML file.
 
-    problem: the Problem that was planned, or the name of its file; None for the one that the plan
-    keeps, which it does until it is pickled. plan: Plan, JobPlan or WorkcellPlan.
-    file: where the page is written.
+    problem: the Problem that was planned, or the name of its file; None for the one that the answer
+    keeps, which it does until it is pickled. file: where the page is written.
 
     Returns the page as text, or None where it was written. The problem is planned again, which
-    gives the same path, in the time of one plan. Raises ValueError for plans without a verdict, for
-    those that depend on functions of Python, for a problem with another answer, and where the
+    gives the same answer, in the time of one plan. Raises ValueError for answers without a verdict,
+    for those that depend on functions of Python, for a problem with another answer, and where the
     package was built without pages.
     """
-    if isinstance(plan, _swivel.JobPlan):
-        return _written(_swivel._draw_job(plan, _given(problem)), file)
-    if isinstance(plan, _swivel.WorkcellPlan):
-        return _written(_swivel._draw_workcell(plan, _given(problem)), file)
-    return _written(_swivel._draw(plan, _given(problem), True, False)[1], file)
+    return _written(_swivel._draw(answer, _given(problem), True, False)[1], file)
 
 
 def map_svg(
-    problem: Problem | _File | None, plan: Plan, file: _File | None = None, *, full: bool = False
+    problem: Problem | _File | None, answer: Answer, file: _File | None = None, *,
+    full: bool = False
 ) -> str | Any:
-    """Draws the lattice map of a plan as SVG: what `swivel plan --map-svg` writes.
+    """Draws the lattice map of an answer as SVG: what `swivel plan --map-svg` writes.
 
-    problem, plan, file: as for report(). full: ask the clearance of every node, not only of those
-    that the search asked about.
+    problem, answer, file: as for report(), of one path. full: ask the clearance of every node, not
+    only of those that the search asked about.
 
     Returns the SVG as text, or None where it was written. Raises as report() does.
     """
-    return _written(_swivel._draw(plan, _given(problem), False, full)[0], file)
+    drawn = _swivel._draw(answer, _given(problem), False, full)[0]
+    if not drawn:
+        raise ValueError("map_svg: of one path: allowed are answers without strokes, of one arm")
+    return _written(drawn, file)
 
 
 def certificate(
@@ -85,12 +83,7 @@ def certificate(
     the problem has an answer. Raises ValueError where strokes have no answer though each has a path
     by itself, and TimeoutError.
     """
-    problem = _loaded(problem)
-    if problem._kind() == "one path":
-        return _swivel._certificate(problem, planner, threads, timeout)
-    plan = _swivel._plan_strokes if problem._kind() == "strokes" else _swivel._plan_two_arms
-    answer = plan(problem, planner=planner, threads=threads, timeout=timeout)
-    return None if answer.solved else answer.certificate(timeout=timeout)
+    return _swivel._certificate(_loaded(problem), planner, threads, timeout)
 
 
 def load_certificate(file: _File) -> Certificate | WorkcellCertificate:
@@ -118,9 +111,7 @@ def check_certificate(
     """
     if isinstance(certificate, (str, os.PathLike)):
         certificate = load_certificate(certificate)
-    of_two_arms = isinstance(certificate, _swivel.WorkcellCertificate)
-    verify = _swivel._check_workcell_certificate if of_two_arms else _swivel._check_certificate
-    return verify(_loaded(problem), certificate, timeout)
+    return _swivel._check_certificate(_loaded(problem), certificate, timeout)
 
 
 class _Frame:
@@ -141,18 +132,18 @@ def _in_a_notebook():
     return shell is not None and hasattr(shell, "kernel")
 
 
-def _plan_report(self, file: _File | None = None) -> str | Any:
-    """Makes the page of the plan: what `swivel plan --report` writes. See swivel.report()."""
+def _report(self, file: _File | None = None) -> str | Any:
+    """Makes the page of the answer: what `swivel plan --report` writes. See swivel.report()."""
     return report(None, self, file)
 
 
-def _plan_map_svg(self, file: _File | None = None, *, full: bool = False) -> str | Any:
-    """Draws the lattice map of the plan as SVG. See swivel.map_svg()."""
+def _map_svg(self, file: _File | None = None, *, full: bool = False) -> str | Any:
+    """Draws the lattice map of the answer as SVG. See swivel.map_svg()."""
     return map_svg(None, self, file, full=full)
 
 
-def _plan_show(self, *, height: int = 720) -> None:
-    """Shows the page of the plan: in the cell of a notebook, else in the web browser.
+def _show(self, *, height: int = 720) -> None:
+    """Shows the page of the answer: in the cell of a notebook, else in the web browser.
 
     height: of the cell, pixels. Raises as report() does.
     """
@@ -169,9 +160,9 @@ def _plan_show(self, *, height: int = 720) -> None:
     webbrowser.open(pathlib.Path(file.name).as_uri())
 
 
-def _plan_html(self):
+def _html(self):
     """Returns what a notebook shows: the answer, its map, and a button that opens the page."""
-    words = html.escape(repr(self).removeprefix("<Plan ").removesuffix(">"))
+    words = html.escape(repr(self).removeprefix("<Answer ").removesuffix(">"))
     answer = f'<pre style="white-space:pre-wrap">{words}</pre>'
     try:
         image, page = _swivel._draw(self, None, _swivel._page_available(), False)
@@ -180,13 +171,13 @@ def _plan_html(self):
     data = base64.b64encode(image.encode()).decode()
     drawn = (
         '<img alt="Lattice map" style="max-width:100%;max-height:36em" '
-        f'src="data:image/svg+xml;base64,{data}"/>'
+        f'src="data:image/svg+xml;base64,{data}"/>' if image else ""
     )
     if not page:
         return answer + drawn
     packed = gzip.compress(page.encode(), mtime=0)
     if len(packed) > _MOST_IN_A_NOTEBOOK:
-        return f"{answer}{drawn}<p>The page is large: plan.report(file) writes it.</p>"
+        return f"{answer}{drawn}<p>The page is large: report(file) writes it.</p>"
     button = (
         f'<p><button onclick="{html.escape(_OPEN)}" '
         f'data-page="{base64.b64encode(packed).decode()}">Open the page</button></p>'
@@ -194,46 +185,39 @@ def _plan_html(self):
     return answer + drawn + button
 
 
-def _workcell_certificate(
-    self, workcell: Problem | _File | None = None, *, timeout: float | None = None
-) -> WorkcellCertificate:
-    """Proves that the workcell has no plan, as `swivel plan WORKCELL --certificate` does.
+def _certificate(
+    self, problem: Problem | _File | None = None, *, timeout: float | None = None
+) -> Certificate | WorkcellCertificate:
+    """Proves that the problem has no answer, as `swivel plan --certificate` does.
 
-    workcell: the Problem that was planned, or the name of its file; None for the one that the plan
+    problem: the Problem that was planned, or the name of its file; None for the one that the answer
     keeps until it is pickled. timeout: s, or None.
 
-    Returns a WorkcellCertificate. The proof comes from a search of its own. Raises ValueError for
-    plans that are not infeasible, or were made with refine or speed, and TimeoutError.
+    Returns what certificate() returns. The problem is planned again. Raises ValueError for answers
+    that are not infeasible, for those that were made with refine, a motion or functions of Python,
+    for strokes that each have a path by themselves, and TimeoutError.
     """
-    return _swivel._workcell_certificate(self, _given(workcell), timeout)
-
-
-def _job_certificate(
-    self, job: Problem | _File | None = None, *, timeout: float | None = None
-) -> Certificate:
-    """Proves that a stroke has no path by itself, as `swivel plan JOB --certificate` does.
-
-    job: the Problem that was planned, or the name of its file; None for the one that the plan keeps
-    until it is pickled. timeout: s, or None.
-
-    Returns a Certificate, of the first such stroke; check_certificate() verifies it. The job is
-    planned again. Raises ValueError for plans in which each stroke has a path by itself and for
-    those with a motion, and TimeoutError.
-    """
-    return _swivel._job_certificate(self, _given(job), timeout)
+    if not self._is_of_problem_alone():
+        raise ValueError(
+            "a certificate is of the problem as it is: allowed is an answer without refine, speed, "
+            "turn_speed, rate and functions of Python"
+        )
+    if self.status != "infeasible":
+        raise ValueError(f"the answer is '{self.status}': allowed is one that is infeasible")
+    problem = self._problem() if problem is None else _given(problem)
+    if problem is None:
+        raise ValueError(
+            "problem: an answer that was unpickled has none: allowed is the problem that was "
+            "planned"
+        )
+    proof = certificate(problem, planner=self.planner, timeout=timeout)
+    if proof is None:
+        raise ValueError("problem: has another answer than this one: allowed is its own")
+    return proof
 
 
 def extend():
-    """Gives the classes of plans what is written in this file."""
-    for kind, proof in (
-        (_swivel.JobPlan, _job_certificate),
-        (_swivel.WorkcellPlan, _workcell_certificate),
-    ):
-        kind.report, kind.show, kind.certificate = _plan_report, _plan_show, proof
-    for name, method in (
-        ("report", _plan_report),
-        ("map_svg", _plan_map_svg),
-        ("show", _plan_show),
-        ("_repr_html_", _plan_html),
-    ):
-        setattr(_swivel.Plan, name, method)
+    """Gives answers what is written in this file."""
+    for method in (_report, _map_svg, _show, _certificate):
+        setattr(_swivel.Answer, method.__name__[1:], method)
+    _swivel.Answer._repr_html_ = _html

@@ -114,7 +114,7 @@ def _to_dataframe(self) -> Any:
 
 def extend():
     """Gives the classes of the module what is written in this file."""
-    for kind in (_swivel.Trajectory, _swivel.Motion, _swivel.JobMotion):
+    for kind in (_swivel.Trajectory, _swivel.Motion):
         for name, method in (
             ("__array__", _array),
             ("__getitem__", _getitem),

@@ -8,12 +8,12 @@
 #include <iterator>
 
 #include "robots.hpp"
-#include "swivel/io/jobs/job_trajectory.hpp"
 #include "swivel/io/motions/motion.hpp"
+#include "swivel/io/motions/trajectory.hpp"
 #include "swivel/io/problems/problem.hpp"
+#include "swivel/io/results/given_answer.hpp"
 #include "swivel/io/tables/placement.hpp"
 #include "swivel/io/tables/shards.hpp"
-#include "swivel/io/workcells/workcell_csv.hpp"
 
 namespace swivel::test {
 
@@ -376,16 +376,18 @@ Reader job_reader(const TempFolder& folder) {
     motion.events.push_back({timed[timed.size() - 4].t, part / 2, 0.1, true});
     motion.events.push_back({timed[timed.size() - 2].t, part / 2, 0.3, false});
   }
+  Motion all;
+  all.arms.push_back(motion);
+  const auto text = [&](const char* name) {
+    return io::test::text_of_motion(all, job, {joints}, name);
+  };
   return {
       "job_rows",
-      {io::to_csv(result, job), io::to_job_motion_csv(motion, job, joints),
-       io::job_motion_text(motion, job, joints, "base", "m.json"),
-       io::job_motion_text(motion, job, joints, "base", "m.yaml"),
-       io::job_motion_text(motion, job, joints, "base", "m.mcap")},
+      {io::to_csv(result, job), text("m.csv"), text("m.json"), text("m.yaml"), text("m.mcap")},
       {",", "\"", "\n", "1e9,", ",left,1\n", ",right,0\n", ",left/1,1\n", ",left/2,1\n", ",,0\n",
        "\"run\": {", "\"left/1\"", "\"events\": [", "{", "}", "[", "]", "null", "\"off\""},
       at(folder, "job.csv",
-         [joints, job](const fs::path& path) { (void)io::load_job_rows(path, job, joints); })};
+         [joints, job](const fs::path& path) { (void)io::load_answer(path, job, {joints}); })};
 }
 
 /// Returns the reader of the rows of two arms.
@@ -406,14 +408,17 @@ Reader workcell_reader(const TempFolder& folder) {
       timed.row = row;
     }
   }
+  Problem cell = two_arms();
+  for (std::size_t k = 0; k < 2; ++k) cell.arms[k].name = names[k];
+  const std::vector<io::JointNames> of_arms(joints.begin(), joints.end());
+  const auto text = [&](const char* name) {
+    return io::test::text_of_motion(motion, cell, of_arms, name);
+  };
   return {"workcell_rows",
-          {io::to_csv(result, two_arms()), io::to_workcell_motion_csv(motion, joints),
-           io::workcell_motion_text(motion, joints, "base", "m.json"),
-           io::workcell_motion_text(motion, joints, "base", "m.yaml"),
-           io::workcell_motion_text(motion, joints, "base", "m.mcap")},
+          {io::to_csv(result, cell), text("m.csv"), text("m.json"), text("m.yaml"), text("m.mcap")},
           {",", "\"", "\n", "1e9,", ",8,", ",0.5,", "branch_left", "t,", "0.004,"},
-          at(folder, "cell.csv", [names, joints](const fs::path& path) {
-            (void)io::load_workcell_rows(path, names, joints);
+          at(folder, "cell.csv", [cell, of_arms](const fs::path& path) {
+            (void)io::load_answer(path, cell, of_arms);
           })};
 }
 

@@ -133,4 +133,19 @@ inline std::string arm_urdf() {
          "<limit lower='0' upper='0.04' velocity='0' effort='0'/></joint>\n</robot>\n";
 }
 
+/// Returns a motion in the format of the file name's ending, as it is written of an answer.
+/// `joint_names` are those of each arm.
+inline std::string text_of_motion(const Motion& motion, const Problem& problem,
+                                  const std::vector<JointNames>& joint_names,
+                                  const std::string& name) {
+  Answer answer;
+  answer.arms.resize(motion.arms.size());
+  for (std::size_t k = 0; k < answer.arms.size(); ++k) {
+    answer.arms[k].name = motion.arms[k].name;
+    answer.arms[k].joint_names = joint_names.at(k);
+  }
+  answer.motion.emplace().motion = motion;
+  return motion_text(answer, problem, name);
+}
+
 }  // namespace swivel::io::test

@@ -67,6 +67,22 @@ ArmMotion random_motion(Random& random, const Problem& job, bool lines, bool rol
   return motion;
 }
 
+std::string text_of(const ArmMotion& motion, const Problem& job, const char* name) {
+  Motion all;
+  all.arms.push_back(motion);
+  return text_of_motion(all, job, {kNames}, name);
+}
+
+/// Loads a motion from a file that has times.
+GivenArm load_motion(const fs::path& file, const Problem& job) {
+  GivenAnswer given = load_answer(file, job, {kNames});
+  EXPECT_TRUE(given.has_times());
+  return std::move(given.arms.front());
+}
+
+/// The second stroke, then the first one; directions are not stated.
+const std::vector<StrokeRun> kOrder{{1, false}, {0, false}};
+
 void expect_same(const ArmMotion& is, const ArmMotion& was) {
   ASSERT_EQ(is.rows.size(), was.rows.size());
   for (std::size_t k = 0; k < is.rows.size(); ++k) {
@@ -99,11 +115,11 @@ TEST(JobMotion, EveryBitIsReadAgain) {
     SCOPED_TRACE("trial " + std::to_string(trial));
     const Problem job = two_strokes(random.coin());
     const ArmMotion motion = random_motion(random, job, random.coin(), random.coin());
-    const fs::path file = folder.write("m.csv", to_job_motion_csv(motion, job, kNames));
-    const JobMotionFile read = load_job_motion(file, job, kNames);
-    expect_same(read.motion, motion);
-    EXPECT_EQ(read.strokes, (std::vector<std::size_t>{1, 0}));
-    EXPECT_TRUE(std::holds_alternative<JobMotionFile>(load_job_rows(file, job, kNames)));
+    const fs::path file = folder.write("m.csv", text_of(motion, job, "m.csv"));
+    const GivenArm read = load_motion(file, job);
+    expect_same(*read.motion, motion);
+    EXPECT_EQ(read.order, kOrder);
+    EXPECT_TRUE(read.stated.motions() && !read.states_directions && read.parts.empty());
     rows += static_cast<int>(motion.rows.size());
   }
   std::printf("%d rows\n", rows);
@@ -117,7 +133,7 @@ TEST(JobMotion, OtherFormatsHaveEventsAndAreReadWithoutThem) {
   const ArmMotion motion = random_motion(random, job, true, false);
   for (const char* const name : {"m.json", "m.yaml", "m.mcap"}) {
     SCOPED_TRACE(name);
-    const std::string text = job_motion_text(motion, job, kNames, "base", name);
+    const std::string text = text_of(motion, job, name);
     const TrajectoryFile read = load_trajectory_file(folder.write(name, text), kNames);
     ASSERT_EQ(read.rows.size(), motion.rows.size());
     for (std::size_t k = 0; k < read.rows.size(); ++k)
@@ -126,7 +142,7 @@ TEST(JobMotion, OtherFormatsHaveEventsAndAreReadWithoutThem) {
       EXPECT_NE(text.find("\"stroke\": \"" + job.arm().strokes[event.stroke].name + "\", \"s\": "),
                 std::string::npos);
   }
-  const auto json = nlohmann::json::parse(job_motion_text(motion, job, kNames, "base", "m.json"));
+  const auto json = nlohmann::json::parse(text_of(motion, job, "m.json"));
   ASSERT_EQ(json["events"].size(), 4u);
   for (std::size_t k = 0; k < 4; ++k) {
     EXPECT_EQ(json["events"][k]["t"].get<double>(), motion.events[k].t);
@@ -134,8 +150,7 @@ TEST(JobMotion, OtherFormatsHaveEventsAndAreReadWithoutThem) {
     EXPECT_EQ(json["events"][k]["stroke"], k < 2 ? "right" : "left");
     EXPECT_EQ(json["events"][k]["process"], k % 2 == 0 ? "on" : "off");
   }
-  expect_message(input_error([&] { (void)job_motion_text(motion, job, kNames, "base", "m.bag"); }),
-                 {"m.bag", ".mcap"});
+  expect_message(input_error([&] { (void)text_of(motion, job, "m.bag"); }), {"m.bag", ".mcap"});
 }
 
 /// Messages and logs hold joints, times to the nanosecond and events; the log no accelerations.
@@ -148,24 +163,24 @@ TEST(JobMotion, OtherFormatsAreReadAgain) {
     const ArmMotion motion = random_motion(random, job, random.coin(), false);
     for (const char* const name : {"m.json", "m.yaml", "m.mcap"}) {
       SCOPED_TRACE(std::string(name) + ", trial " + std::to_string(trial));
-      const std::string text = job_motion_text(motion, job, kNames, "base", name);
-      const JobMotionFile read = load_job_motion(folder.write(name, text), job, kNames);
+      const std::string text = text_of(motion, job, name);
+      const GivenArm read = load_motion(folder.write(name, text), job);
       const bool log = name == std::string("m.mcap");
       EXPECT_FALSE(read.stated.s || read.stated.phi || read.stated.branch || read.stated.roll);
       EXPECT_EQ(read.stated.a, !log);
-      EXPECT_EQ(read.strokes, (std::vector<std::size_t>{1, 0}));
-      EXPECT_EQ(read.motion.part, motion.part);
-      ASSERT_EQ(read.motion.rows.size(), motion.rows.size());
+      EXPECT_EQ(read.order, kOrder);
+      EXPECT_EQ(read.motion->part, motion.part);
+      ASSERT_EQ(read.motion->rows.size(), motion.rows.size());
       for (std::size_t k = 0; k < motion.rows.size(); ++k) {
-        const TimedRow &is = read.motion.rows[k], &was = motion.rows[k];
+        const TimedRow &is = read.motion->rows[k], &was = motion.rows[k];
         EXPECT_NEAR(is.t, was.t, 1e-9);
         EXPECT_EQ(is.row.q, was.row.q);
         EXPECT_EQ(is.v, was.v);
         if (!log) EXPECT_EQ(is.a, was.a);
       }
-      ASSERT_EQ(read.motion.events.size(), motion.events.size());
+      ASSERT_EQ(read.motion->events.size(), motion.events.size());
       for (std::size_t k = 0; k < motion.events.size(); ++k) {
-        const ProcessEvent &is = read.motion.events[k], &was = motion.events[k];
+        const ProcessEvent &is = read.motion->events[k], &was = motion.events[k];
         EXPECT_NEAR(is.t, was.t, 1e-9);
         EXPECT_EQ(is.s, was.s);
         EXPECT_EQ(is.stroke, was.stroke);
@@ -182,7 +197,7 @@ TEST(JobMotion, TrajectoryFilesRefuseRowsOfJobs) {
   Random random(6);
   const Problem job = two_strokes(true);
   const ArmMotion motion = random_motion(random, job, true, false);
-  const fs::path file = folder.write("m.csv", to_job_motion_csv(motion, job, kNames));
+  const fs::path file = folder.write("m.csv", text_of(motion, job, "m.csv"));
   expect_message(input_error([&] { (void)load_trajectory_file(file, kNames); }),
                  {"m.csv:1", "'stroke' and 'process' are those of a job's rows"});
   for (const auto& [text, needle] :
@@ -200,7 +215,7 @@ TEST(JobMotion, StrokesBetweenTwoSamplesHaveNoRows) {
   ArmMotion motion = random_motion(random, job, true, false);
   motion.events[1].t = motion.events[0].t;
   for (const char* const name : {"m.csv", "m.json", "m.mcap"})
-    expect_message(input_error([&] { (void)job_motion_text(motion, job, kNames, "base", name); }),
+    expect_message(input_error([&] { (void)text_of(motion, job, name); }),
                    {"job.yaml", "stroke 'right' begins and ends between two samples"});
 }
 
@@ -258,13 +273,13 @@ void expect_refused(bool home, const std::vector<BadFile>& files) {
     for (const bool on : {true, true, false, false}) add(stroke, true, on);
   }
   for (int k = 0; home && k < 3; ++k) add("", false, false);
-  (void)load_job_motion(folder.write("m.csv", text), job, kNames);
+  (void)load_motion(folder.write("m.csv", text), job);
   for (const auto& [name, change, needles] : files) {
     SCOPED_TRACE(name);
     Rows rows = rows_of(text);
     change(rows);
     const fs::path file = folder.write("m.csv", text_of(rows));
-    expect_message(input_error([&] { (void)load_job_motion(file, job, kNames); }), needles);
+    expect_message(input_error([&] { (void)load_answer(file, job, {kNames}); }), needles);
   }
 }
 

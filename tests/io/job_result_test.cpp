@@ -71,6 +71,13 @@ Answer plan_of_two() {
   return result;
 }
 
+/// Loads the parts of two_strokes() from a file without times.
+GivenArm load_parts(const fs::path& file) {
+  GivenAnswer given = load_answer(file, two_strokes(), {kNames});
+  EXPECT_FALSE(given.has_times());
+  return std::move(given.arms.front());
+}
+
 TEST(JobTrajectory, HeaderAndRows) {
   const std::string text = to_csv(plan_of_two(), two_strokes());
   EXPECT_TRUE(
@@ -85,13 +92,13 @@ TEST(JobTrajectory, HeaderAndRows) {
 
 TEST(JobTrajectory, ProcessIsOnTheStrokeItself) {
   const TempFolder folder;
-  const JobTrajectory read =
-      load_job_trajectory(folder.write("t.csv", to_csv(plan_of_two(), two_strokes())), kNames);
+  const GivenArm read = load_parts(folder.write("t.csv", to_csv(plan_of_two(), two_strokes())));
   ASSERT_EQ(read.parts.size(), 5u);
-  EXPECT_EQ(read.parts[1].first_process, 0u);
-  EXPECT_EQ(read.parts[1].last_process, 2u);
-  EXPECT_EQ(read.parts[3].first_process, 2u);  // past the approach of 0.02 m
-  EXPECT_EQ(read.parts[3].last_process, 4u);   // before the retract
+  ASSERT_EQ(read.process.size(), 5u);
+  EXPECT_EQ(read.process[0], std::vector<bool>(2, false));
+  EXPECT_EQ(read.process[1], std::vector<bool>(3, true));
+  // past the approach of 0.02 m, and before the retract
+  EXPECT_EQ(read.process[3], (std::vector<bool>{false, false, true, true, true, false}));
 }
 
 TEST(JobTrajectory, StrokesAreFoundByName) {
@@ -118,17 +125,13 @@ TEST(JobTrajectory, EveryBitIsReadAgain) {
         row.branch = random.below(8);
         if (round % 2 == 1) row.roll = random.uniform(-4, 4);
       }
-    const JobTrajectory read =
-        load_job_trajectory(folder.write("t.csv", to_csv(plan, two_strokes())), kNames);
+    const GivenArm read = load_parts(folder.write("t.csv", to_csv(plan, two_strokes())));
     EXPECT_TRUE(read.stated.rows());
     ASSERT_EQ(read.parts.size(), plan.arm().parts.size());
-    std::size_t row = 0;
     for (std::size_t k = 0; k < plan.arm().parts.size(); ++k) {
       const Part& part = plan.arm().parts[k];
-      EXPECT_EQ(read.parts[k].stroke,
-                part.run ? two_strokes().arm().strokes[part.run->stroke].name : "");
-      EXPECT_EQ(read.parts[k].first_row, row);
-      row += part.rows.size();
+      EXPECT_EQ(read.parts[k].run.has_value(), part.run.has_value());
+      if (part.run) EXPECT_EQ(read.parts[k].run->stroke, part.run->stroke);
       ASSERT_EQ(read.parts[k].rows.size(), part.rows.size());
       for (std::size_t i = 0; i < part.rows.size(); ++i) {
         const TrajectoryRow &was = part.rows[i], &is = read.parts[k].rows[i];
@@ -147,14 +150,14 @@ TEST(JobTrajectory, EveryBitIsReadAgain) {
 /// Columns come in any order, and those that follow from the joints may be missing.
 TEST(JobTrajectory, ColumnsAreReadByName) {
   const TempFolder folder;
-  const JobTrajectory read =
-      load_job_trajectory(folder.write("t.csv",
-                                       "process,g,f,e,d,c,b,stroke,a,s\n"
-                                       "0,7,6,5,4,3,2,,1,\n0,7,6,5,4,3,2,,1,\n"
-                                       "1,7,6,5,4,3,2,left,1,0\n1,7,6,5,4,3,2,left,1,0.5\n"),
-                          kNames);
+  const GivenArm read =
+      load_parts(folder.write("t.csv",
+                              "process,g,f,e,d,c,b,stroke,a,s\n"
+                              "0,7,6,5,4,3,2,,1,\n0,7,6,5,4,3,2,,1,\n"
+                              "1,7,6,5,4,3,2,left,1,0\n1,7,6,5,4,3,2,left,1,0.5\n"));
   ASSERT_EQ(read.parts.size(), 2u);
-  EXPECT_EQ(read.parts[1].stroke, "left");
+  EXPECT_EQ(read.parts[0].run, std::nullopt);
+  EXPECT_EQ(read.parts[1].run, (StrokeRun{0, false}));
   EXPECT_EQ(read.parts[1].rows[1].s, 0.5);
   EXPECT_EQ(read.parts[1].rows[1].q, (Config() << 1, 2, 3, 4, 5, 6, 7).finished());
   EXPECT_TRUE(read.stated.s && read.stated.last_joint);
@@ -176,7 +179,7 @@ void expect_refused(const std::vector<BadFile>& files) {
   for (const auto& [name, text, needles] : files) {
     SCOPED_TRACE(name);
     const fs::path file = folder.write("t.csv", text);
-    expect_message(input_error([&] { (void)load_job_trajectory(file, kNames); }), needles);
+    expect_message(input_error([&] { (void)load_answer(file, two_strokes(), {kNames}); }), needles);
   }
 }
 
@@ -188,9 +191,9 @@ TEST(JobTrajectory, BadFields) {
       {"no process",
        "s,phi,branch,a,b,c,d,e,f,g,stroke\n0,0,0,0,0,0,0,0,0,0,left\n",
        {"t.csv:1", "column 'process' is missing"}},
-      {"times",
-       "t,a,b,c,d,e,f,g,stroke,process\n0,0,0,0,0,0,0,0,left,1\n1,0,0,0,0,0,0,0,left,0\n",
-       {"t.csv: has times"}},
+      {"another stroke",
+       kHeader + kLeft + kLeft + "0,0,0,0,0,0,0,0,0,0,lfet,1\n",
+       {"t.csv:4: data row 3", "stroke: 'lfet' is no stroke of the job"}},
       {"other joints",
        "s,phi,branch,a,b,c,d,e,f,x,stroke,process\n" + kLeft + kLeft,
        {"t.csv:1", "column 'x' is unknown, or no joint of the arm", "a, b, c, d, e, f, g"}},

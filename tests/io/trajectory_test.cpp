@@ -7,7 +7,6 @@
 #include "io_support.hpp"
 #include "seed.hpp"
 #include "swivel/io/motions/motion.hpp"
-#include "swivel/io/workcells/workcell_csv.hpp"
 
 namespace swivel::io::test {
 namespace {
@@ -465,11 +464,13 @@ TEST(Trajectory, RollsOfTwoArmsAreNamedByArm) {
     }
   }
   const std::string rows = to_csv(result, two_arms()),
-                    timed = to_workcell_motion_csv(motion, joints);
+                    timed = text_of_motion(motion, two_arms(), {joints[0], joints[1]}, "t.csv");
   EXPECT_TRUE(rows.starts_with(
       "s_left,s_right,phi_left,phi_right,branch_left,branch_right,a,b,c,d,e,f,roll_left,g,h,i,j,k,"
       "l,roll_right\n"));
   EXPECT_NE(timed.find(",f_v,roll_left_v,g_v,"), std::string::npos);
+  Problem cell = two_arms();
+  for (std::size_t k = 0; k < 2; ++k) cell.arms[k].name = names[k];
   for (const std::string& text : {rows, timed}) {
     std::string before = text;
     for (const std::string& name : names)
@@ -478,11 +479,16 @@ TEST(Trajectory, RollsOfTwoArmsAreNamedByArm) {
         before.erase(at + 4, name.size() + 1);
     ASSERT_NE(before, text);
     for (const std::string& one : {text, before}) {
-      const WorkcellRows read = load_workcell_rows(folder.write("t.csv", one), names, joints);
-      EXPECT_EQ(read.timed[0].empty(), text == rows);
+      const GivenAnswer read =
+          load_answer(folder.write("t.csv", one), cell, {joints[0], joints[1]});
+      EXPECT_EQ(read.has_times(), text == timed);
       for (std::size_t k = 0; k < 2; ++k)
-        for (std::size_t i = 0; i < 3; ++i)
-          EXPECT_EQ(read.rows[k].at(i).q, result.arms[k].rows()[i].q);
+        for (std::size_t i = 0; i < 3; ++i) {
+          const GivenArm& arm = read.arms[k];
+          const Config& q =
+              arm.motion ? arm.motion->rows.at(i).row.q : arm.parts.front().rows.at(i).q;
+          EXPECT_EQ(q, result.arms[k].rows()[i].q);
+        }
     }
   }
 }

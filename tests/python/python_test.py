@@ -1257,10 +1257,18 @@ class Pickles(unittest.TestCase):
                     not name.startswith("_")
                     and isinstance(member, property)
                     and not (isinstance(a, swivel.Motion) and not a.executable)
-                    and not (isinstance(a, swivel.Problem) and name in ("arms", "names"))
-                    and (not isinstance(a, swivel.Problem) or hasattr(a, name))
+                    and not self.is_again(a, name)
+                    and hasattr(a, name)
                 ):
                     self.same(getattr(a, name), getattr(b, name), f"{where}.{name}")
+
+    @staticmethod
+    def is_again(thing, name):
+        """Whether a member of a thing is of the thing's own class, without end."""
+        one_run = isinstance(thing, swivel.Check) and len(thing.runs) == 1
+        return name == "arms" and isinstance(thing, (swivel.Problem, swivel.Motion)) or (
+            name == "runs" and one_run
+        )
 
     def through(self, thing):
         for protocol in (2, pickle.HIGHEST_PROTOCOL):
@@ -1639,11 +1647,9 @@ class Stubs(unittest.TestCase):
         from stubs import MAYBE
 
         anything = MAYBE | {
-            "Trajectory.to_dataframe", "Motion.to_dataframe", "JobMotion.to_dataframe",
-            "Trajectory.__array__", "Motion.__array__", "JobMotion.__array__", "Plan.report",
-            "Plan.map_svg", "JobPlan.report", "WorkcellPlan.report", "report", "map_svg",
-            "campaign", "place", "compute_cartesian_path", "plan", "time", "advise",
-            "load_trajectory"
+            "Trajectory.to_dataframe", "Motion.to_dataframe", "Trajectory.__array__",
+            "Motion.__array__", "Answer.report", "Answer.map_svg", "report", "map_svg",
+            "campaign", "place", "compute_cartesian_path", "load_trajectory"
         }
         count = 0
         for name, node in self.functions():
@@ -1702,7 +1708,7 @@ class Stubs(unittest.TestCase):
             ("f(x: float = array([0.,\n 1.])) -> None", "f: its docstring has no signature"),
             ("f(x) -> None", "f: x has no type"),
             # It is known, and tables have entries for all of the package.
-            ("f(x: int) -> None", "python/stubs.py: nothing needs the entry Episode.cost"),
+            ("f(x: int) -> None", "python/stubs.py: nothing needs the entry Answer.bound"),
         ):
             with self.subTest(doc), self.assertRaisesRegex(SystemExit, "^stubs: " + fault):
                 read(doc)

@@ -46,4 +46,8 @@ std::string formatted(const char* format, ...) {
   return text;
 }
 
+std::string percent(double share) {
+  return formatted(share < 0.0995 ? "%.2g %%" : "%.0f %%", 100 * share);
+}
+
 }  // namespace swivel

@@ -8,7 +8,8 @@
 #include "jobs/job_rows.hpp"
 #include "motions/trajectory_columns.hpp"
 #include "schema/schema.hpp"
-#include "swivel/io/jobs/job_trajectory.hpp"
+#include "swivel/core/messages/formatted.hpp"
+#include "swivel/core/messages/input_error.hpp"
 
 namespace swivel::io {
 
@@ -69,69 +70,74 @@ std::string strokes_csv(const ArmAnswer& arm, const Problem& job) {
 
 namespace {
 
-/// Divides the rows of a job's trajectory into its parts.
-class JobRows {
+/// Divides rows of strokes without times into their parts.
+class StrokeRows {
  public:
-  explicit JobRows(const FileRows& read) : file_(read) {}
+  StrokeRows(const FileRows& read, const Problem& problem) : file_(read), problem_(problem) {}
 
-  JobTrajectory parts() {
-    read_.stated = file_.arms.front().stated;
+  GivenArm parts() {
+    arm_.stated = file_.arms.front().stated;
     for (std::size_t k = 0; k < file_.job.size(); ++k) add(k);
     end_part(file_.file);
-    return std::move(read_);
+    return std::move(arm_);
   }
 
  private:
   void add(std::size_t k) {
     const RowOfJob& of = file_.job[k];
-    if (read_.parts.empty() || read_.parts.back().stroke != of.stroke) begin_part(k);
-    JobTrajectoryPart& part = read_.parts.back();
+    if (k == 0 || file_.job[k - 1].stroke != of.stroke) begin_part(k);
+    std::vector<bool>& process = arm_.process.back();
     if (of.process && of.stroke.empty())
       bad_input(file_.where(k) + ": process", "is 1 in a transition", "0, or the name of a stroke");
-    if (of.process) {
-      if (processed_ && part.last_process + 1 != part.rows.size())
-        bad_input(file_.where(k) + ": process",
-                  "is 1 again in stroke '" + of.stroke + "', after rows with 0",
-                  "one stretch of rows with 1 in a stroke");
-      if (!processed_) part.first_process = part.rows.size();
-      part.last_process = part.rows.size();
-      processed_ = true;
-    }
-    part.rows.push_back(file_.arms.front().rows[k]);
+    if (of.process && processed_ > 0 && !process.back())
+      bad_input(file_.where(k) + ": process",
+                "is 1 again in stroke '" + of.stroke + "', after rows with 0",
+                "one stretch of rows with 1 in a stroke");
+    if (of.process) ++processed_;
+    process.push_back(of.process);
+    arm_.parts.back().rows.push_back(file_.arms.front().rows[k]);
   }
 
   void begin_part(std::size_t k) {
-    if (!read_.parts.empty()) end_part(file_.where(k));
-    const std::string& stroke = file_.job[k].stroke;
-    if (!stroke.empty() && !known_.insert(stroke).second)
-      bad_input(file_.where(k) + ": stroke", "'" + stroke + "' comes twice",
+    if (k > 0) end_part(file_.where(k));
+    const std::string& name = file_.job[k].stroke;
+    if (!name.empty() && !known_.insert(name).second)
+      bad_input(file_.where(k) + ": stroke", "'" + name + "' comes twice",
                 "the rows of a stroke together");
-    read_.parts.push_back({stroke, k, {}});
-    processed_ = false;
+    arm_.parts.emplace_back();
+    arm_.process.emplace_back();
+    processed_ = 0;
+    name_ = name;
+    if (name.empty()) return;
+    const auto stroke = find_stroke(problem_, name);
+    if (!stroke)
+      bad_input(file_.where(k) + ": stroke", "'" + name + "' is no stroke of the job",
+                "the names of its strokes");
+    arm_.parts.back().run = StrokeRun{*stroke, false};
   }
 
   /// Throws InputError, prefixed by `where`, if the last part cannot end there.
   void end_part(const std::string& where) const {
-    const JobTrajectoryPart& part = read_.parts.back();
-    const std::string name =
-        part.stroke.empty() ? "the transition" : "stroke '" + part.stroke + "'";
-    if (part.rows.size() < 2)
+    const std::string name = name_.empty() ? "the transition" : "stroke '" + name_ + "'";
+    if (arm_.parts.back().rows.size() < 2)
       bad_input(where, name + " before it has one row", "at least two rows in each part");
-    if (!part.stroke.empty() && part.first_process == part.last_process)
+    if (!name_.empty() && processed_ < 2)
       bad_input(where, name + " before it has fewer than two rows whose process is 1",
                 "two or more: those on the stroke itself");
   }
 
   const FileRows& file_;
-  JobTrajectory read_;
+  const Problem& problem_;
+  GivenArm arm_;
   std::set<std::string> known_;  // strokes that have come
-  bool processed_ = false;       // a row of the last part had process 1
+  std::string name_;             // of the stroke of the last part
+  std::size_t processed_ = 0;    // rows of the last part whose process is 1
 };
 
 }  // namespace
 
-JobTrajectory trajectory_of(const FileRows& read) {
-  return JobRows(read).parts();
+GivenArm parts_of(const FileRows& read, const Problem& problem) {
+  return StrokeRows(read, problem).parts();
 }
 
 }  // namespace swivel::io

@@ -93,20 +93,23 @@ Problem job_of_rows(const FileRows& read, const Problem& job) {
   }
 }
 
-/// Lets s of rows begin at 0 in each run, as it does in the problem of the run.
-void begin_at_runs(JobTrajectory& read, const Problem& job) {
-  if (!read.stated.s) return;
-  for (JobTrajectoryPart& part : read.parts)
-    if (const auto stroke = find_stroke(job, part.stroke))
-      for (TrajectoryRow& row : part.rows) row.s -= s_of_piece(job.arm().strokes[*stroke]);
-}
-void begin_at_runs(JobMotionFile& read, const Problem& job) {
-  ArmMotion& motion = read.motion;
-  for (ProcessEvent& event : motion.events) event.s -= s_of_piece(job.arm().strokes[event.stroke]);
-  if (!read.stated.s) return;
+/// Lets s of rows, and of events, begin at 0 in each run, as it does in the problem of the run.
+void begin_at_runs(GivenArm& arm, const Problem& problem) {
+  const auto begin_of_stroke = [&](std::size_t stroke) {
+    return s_of_piece(problem.arm().strokes[stroke]);
+  };
+  if (!arm.motion) {
+    for (Part& part : arm.parts)
+      if (part.run && arm.stated.s)
+        for (TrajectoryRow& row : part.rows) row.s -= begin_of_stroke(part.run->stroke);
+    return;
+  }
+  ArmMotion& motion = *arm.motion;
+  for (ProcessEvent& event : motion.events) event.s -= begin_of_stroke(event.stroke);
+  if (!arm.stated.s) return;
   const auto begin_of = [&](std::size_t part) -> double {
-    if ((part % 2 == 1) != job.arm().home.has_value()) return 0;
-    return s_of_piece(job.arm().strokes[read.strokes.at(part / 2)]);
+    if ((part % 2 == 1) != problem.arm().home.has_value()) return 0;
+    return begin_of_stroke(arm.order.at(part / 2).stroke);
   };
   for (std::size_t k = 0; k < motion.rows.size(); ++k) {
     const bool begins = k + 1 < motion.rows.size() && motion.part[k + 1] != motion.part[k];
@@ -117,35 +120,14 @@ void begin_at_runs(JobMotionFile& read, const Problem& job) {
 
 }  // namespace
 
-JobTrajectory load_job_trajectory(const std::filesystem::path& csv, const JointNames& joint_names) {
-  const FileRows read = read_rows_of_job(csv, joint_names);
-  if (has_times(read)) bad_input(read.file, "has times", "the trajectory of a job, which has none");
-  return trajectory_of(read);
-}
-
-JobMotionFile load_job_motion(const std::filesystem::path& file, const Problem& job,
-                              const JointNames& joint_names) {
+GivenAnswer load_strokes(const std::filesystem::path& file, const Problem& problem,
+                         const JointNames& joint_names) {
   const FileRows read = read_rows_of_job(file, joint_names);
-  if (!has_times(read)) bad_input(read.file, "lacks the column t", "the motion of a job");
-  return motion_of(read, job, joint_names);
-}
-
-ExecutedJobRows load_executed_rows(const std::filesystem::path& file, const Problem& job,
-                                   const JointNames& joint_names) {
-  const FileRows rows = read_rows_of_job(file, joint_names);
-  ExecutedJobRows read{job_of_rows(rows, job), {}};
-  if (has_times(rows))
-    read.rows = motion_of(rows, read.job, joint_names);
-  else
-    read.rows = trajectory_of(rows);
-  std::visit([&](auto& of) { begin_at_runs(of, read.job); }, read.rows);
-  return read;
-}
-
-std::variant<JobTrajectory, JobMotionFile> load_job_rows(const std::filesystem::path& file,
-                                                         const Problem& job,
-                                                         const JointNames& joint_names) {
-  return load_executed_rows(file, job, joint_names).rows;
+  GivenAnswer given{job_of_rows(read, problem), {}};
+  given.arms.push_back(has_times(read) ? motion_of(read, given.problem, joint_names)
+                                       : parts_of(read, given.problem));
+  begin_at_runs(given.arms.front(), given.problem);
+  return given;
 }
 
 }  // namespace swivel::io

@@ -83,7 +83,7 @@ class JobMotionRows {
       strokes_.emplace(csv_line_field(job.arm().strokes[k].name), k);
   }
 
-  JobMotionFile motion() {
+  GivenArm motion() {
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       if (k == 0 || of_job_[k].stroke != of_job_[k - 1].stroke) begin_part(k);
       part_.push_back(part_now_);
@@ -97,10 +97,10 @@ class JobMotionRows {
     if (!job_.arm().home && last_stroke.empty())
       bad_input(file_.file, "ends with a transition, though the job has no home",
                 "a stroke at the end");
-    JobMotionFile read;
-    read.stated = file_.arms.front().stated;
-    require_places(states_places(read.stated));
-    ArmMotion& motion = read.motion;
+    GivenArm arm;
+    arm.stated = file_.arms.front().stated;
+    require_places(states_places(arm.stated));
+    ArmMotion& motion = arm.motion.emplace();
     find_events(motion.events);
     motion.duration = rows_.back().t - rows_.front().t;
     motion.rate = static_cast<double>(rows_.size() - 1) / motion.duration;
@@ -109,8 +109,8 @@ class JobMotionRows {
     motion.roll = roll_;
     motion.rows = rows_;
     motion.part = std::move(part_);
-    read.strokes = std::move(order_);
-    return read;
+    for (const std::size_t stroke : order_) arm.order.push_back({stroke, false});
+    return arm;
   }
 
  private:
@@ -206,7 +206,7 @@ class JobMotionRows {
 
 }  // namespace
 
-JobMotionFile motion_of(const FileRows& read, const Problem& job, const JointNames& joint_names) {
+GivenArm motion_of(const FileRows& read, const Problem& job, const JointNames& joint_names) {
   return JobMotionRows(read, job, joint_names).motion();
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "jobs/job_rows.hpp"
 #include "motions/messages.hpp"
-#include "swivel/io/jobs/job_trajectory.hpp"
 
 namespace swivel::io {
 

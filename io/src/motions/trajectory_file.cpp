@@ -330,4 +330,16 @@ TrajectoryFile load_trajectory_file(const std::filesystem::path& path,
   return std::move(read_rows(path, {.arms = {{.joints = joint_names}}}).arms.front());
 }
 
+GivenArm given_arm(TrajectoryFile read) {
+  const StrokeRun run{0, false};
+  GivenArm arm{.stated = read.stated};
+  if (read.timed.empty()) {
+    arm.parts.push_back({.run = run, .rows = std::move(read.rows)});
+    return arm;
+  }
+  arm.motion.emplace().rows = std::move(read.timed);
+  arm.order = {run};
+  return arm;
+}
+
 }  // namespace swivel::io

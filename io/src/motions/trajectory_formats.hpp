@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "swivel/core/answer/given_answer.hpp"
 #include "swivel/io/motions/motion.hpp"
 
 namespace swivel::io {
@@ -71,5 +72,8 @@ struct FileRows {
 /// Throws InputError, one line with `file` and the message.
 [[nodiscard]] FileRows read_mcap(const std::string& file, std::string_view text,
                                  const Sought& sought);
+
+/// Returns what a file states about an arm that runs its only stroke and nothing else.
+[[nodiscard]] GivenArm given_arm(TrajectoryFile read);
 
 }  // namespace swivel::io

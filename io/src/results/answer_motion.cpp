@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/io/jobs/job_trajectory.hpp"
+#include "jobs/job_rows.hpp"
 #include "swivel/io/motions/motion.hpp"
 #include "swivel/io/results/result.hpp"
-#include "swivel/io/workcells/workcell_csv.hpp"
+#include "workcells/workcell_csv.hpp"
 
 namespace swivel::io {
 

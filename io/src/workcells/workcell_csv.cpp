@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "workcells/workcell_csv.hpp"
+
 #include <utility>
 
 #include "files/csv.hpp"
 #include "motions/given_rows.hpp"
 #include "motions/messages.hpp"
 #include "motions/trajectory_columns.hpp"
-#include "swivel/io/workcells/workcell_csv.hpp"
+#include "motions/trajectory_formats.hpp"
 
 namespace swivel::io {
 
@@ -36,16 +38,6 @@ std::string fields_of(const std::array<const TrajectoryRow*, 2>& rows) {
   return text;
 }
 
-}  // namespace
-
-std::string two_arms_csv(const Answer& result) {
-  std::string text = header_line(
-      workcell_columns(arms_of_workcell(names_of_arms(result), joint_names_of_arms(result))));
-  const auto &first = result.arms[0].rows(), &second = result.arms[1].rows();
-  for (std::size_t k = 0; k < first.size(); ++k) text += fields_of({&first[k], &second[k]}) + '\n';
-  return text;
-}
-
 std::string to_workcell_motion_csv(const Motion& motion,
                                    const std::array<JointNames, 2>& joint_names) {
   std::string text = header_line(workcell_motion_header(
@@ -57,6 +49,16 @@ std::string to_workcell_motion_csv(const Motion& motion,
       for (const double value : *values) text += ',' + csv_number(value);
     text += '\n';
   }
+  return text;
+}
+
+}  // namespace
+
+std::string two_arms_csv(const Answer& result) {
+  std::string text = header_line(
+      workcell_columns(arms_of_workcell(names_of_arms(result), joint_names_of_arms(result))));
+  const auto &first = result.arms[0].rows(), &second = result.arms[1].rows();
+  for (std::size_t k = 0; k < first.size(); ++k) text += fields_of({&first[k], &second[k]}) + '\n';
   return text;
 }
 
@@ -73,17 +75,13 @@ std::string workcell_motion_text(const Motion& motion, const std::array<JointNam
   return mcap_log(both);
 }
 
-WorkcellRows load_workcell_rows(const std::filesystem::path& file,
-                                const std::array<std::string, 2>& names,
-                                const std::array<JointNames, 2>& joint_names) {
-  FileRows all = read_rows(file, {.arms = arms_of_workcell(names, joint_names)});
-  WorkcellRows read;
-  for (std::size_t arm = 0; arm < 2; ++arm) {
-    read.rows[arm] = std::move(all.arms[arm].rows);
-    read.timed[arm] = std::move(all.arms[arm].timed);
-    read.stated[arm] = all.arms[arm].stated;
-  }
-  return read;
+GivenAnswer load_two_arms(const std::filesystem::path& file, const Problem& problem,
+                          const std::array<JointNames, 2>& joint_names) {
+  FileRows read = read_rows(
+      file, {.arms = arms_of_workcell({problem.arms[0].name, problem.arms[1].name}, joint_names)});
+  GivenAnswer given{problem, {}};
+  for (TrajectoryFile& arm : read.arms) given.arms.push_back(given_arm(std::move(arm)));
+  return given;
 }
 
 }  // namespace swivel::io

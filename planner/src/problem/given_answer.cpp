@@ -20,14 +20,16 @@ void complete_strokes(const PreparedRobot& robot, const Problem& problem, GivenA
                       const Budget& budget) {
   if (!arm.motion) {
     for (Part& part : arm.parts)
-      if (part.run)
+      if (part.run && !arm.states_directions)
         part.run->reversed = begins_at_last_waypoint(robot, problem, part.run->stroke, part.rows);
     arm.parts = complete_parts(robot, problem, std::move(arm.parts), arm.stated, budget);
     return;
   }
-  std::vector<std::size_t> strokes;
-  for (const StrokeRun& run : arm.order) strokes.push_back(run.stroke);
-  arm.order = runs_of_motion(robot, problem, strokes, *arm.motion);
+  if (!arm.states_directions) {
+    std::vector<std::size_t> strokes;
+    for (const StrokeRun& run : arm.order) strokes.push_back(run.stroke);
+    arm.order = runs_of_motion(robot, problem, strokes, *arm.motion);
+  }
   arm.motion =
       complete_job_motion(robot, problem, arm.order, *std::move(arm.motion), arm.stated, budget);
 }

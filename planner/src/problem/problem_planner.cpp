@@ -74,8 +74,8 @@ struct ProblemPlanner::OfPath : Impl {
 struct ProblemPlanner::OfStrokes : Impl {
   PreparedRobot prepared;
 
-  OfStrokes(Problem p, MotionRequest a)
-      : Impl(std::move(p), std::move(a)), prepared(problem_of_run(problem, {0, false})) {}
+  OfStrokes(Problem p, MotionRequest a, const Budget& budget)
+      : Impl(std::move(p), std::move(a)), prepared(problem_of_run(problem, {0, false}), budget) {}
 
   Answer plan(const PlanOptions& options, bool keeps_view) override {
     view = {};
@@ -119,7 +119,8 @@ struct ProblemPlanner::OfStrokes : Impl {
 struct ProblemPlanner::OfTwoArms : Impl {
   PreparedWorkcell prepared;
 
-  OfTwoArms(Problem p, MotionRequest a) : Impl(std::move(p), std::move(a)), prepared(problem) {}
+  OfTwoArms(Problem p, MotionRequest a, const Budget& budget)
+      : Impl(std::move(p), std::move(a)), prepared(problem, budget) {}
 
   Answer plan(const PlanOptions& options, bool keeps_view) override {
     view = {};
@@ -136,13 +137,13 @@ struct ProblemPlanner::OfTwoArms : Impl {
   [[nodiscard]] const PreparedRobot& robot() const override { return prepared.robot(0); }
 };
 
-ProblemPlanner::ProblemPlanner(Problem problem, MotionRequest asked) {
+ProblemPlanner::ProblemPlanner(Problem problem, MotionRequest asked, const Budget& budget) {
   if (problem.arms.size() == 2)
-    impl_ = std::make_unique<OfTwoArms>(std::move(problem), std::move(asked));
+    impl_ = std::make_unique<OfTwoArms>(std::move(problem), std::move(asked), budget);
   else if (is_path(problem))
     impl_ = std::make_unique<OfPath>(std::move(problem), std::move(asked));
   else
-    impl_ = std::make_unique<OfStrokes>(std::move(problem), std::move(asked));
+    impl_ = std::make_unique<OfStrokes>(std::move(problem), std::move(asked), budget);
 }
 ProblemPlanner::~ProblemPlanner() = default;
 ProblemPlanner::ProblemPlanner(ProblemPlanner&&) noexcept = default;

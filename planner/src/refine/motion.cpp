@@ -292,8 +292,11 @@ void stop(MotionPlan& plan, bool refined, bool timed) {
   plan.stopped = true;
   const double cost = plan.result.cost;
   if (refined)
-    plan.refinement =
-        Refined{.rows = plan.lattice_path, .reason = "stopped", .cost_before = cost, .cost = cost};
+    plan.refinement = Refined{.rows = plan.lattice_path,
+                              .rows_before = plan.lattice_path,
+                              .reason = "stopped",
+                              .cost_before = cost,
+                              .cost = cost};
   if (timed) plan.motion.emplace().failure = NoMotion{0, "stopped"};
 }
 
@@ -380,6 +383,7 @@ MotionPlan plan_motion(Planner& planner, const PlanOptions& options, bool refine
   margins.check = options.hooks.check;
   if (own_cost)
     plan.refinement = Refined{.rows = plan.lattice_path,
+                              .rows_before = plan.lattice_path,
                               .reason = "the caller's own cost is not refined",
                               .cost_before = result.cost,
                               .cost = result.cost};

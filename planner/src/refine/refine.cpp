@@ -777,6 +777,7 @@ Refined refine_between_ends(const PreparedRobot& robot, const PathProblem& probl
   count_from_path(chain, path, counted);
   Refined refined = refine_counted(robot, problem, path, counted, options, budget);
   count_from_waypoints(chain, path, refined.rows);
+  refined.rows_before = rows;
   return refined;
 }
 

@@ -85,8 +85,11 @@ class AfterPlan {
     RefinedArms& none = answer_.refinement.emplace();
     for (std::size_t k = 0; k < 2; ++k) {
       const double cost = answer_.arms[k].cost();
-      none.arms.push_back(
-          {.rows = planned_[k], .reason = "stopped", .cost_before = cost, .cost = cost});
+      none.arms.push_back({.rows = planned_[k],
+                           .rows_before = planned_[k],
+                           .reason = "stopped",
+                           .cost_before = cost,
+                           .cost = cost});
     }
     none.cost_before = none.cost = answer_.cost;
   }

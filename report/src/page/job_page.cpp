@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/report/job_page.hpp"
+#include "page/job_page.hpp"
 
 #include <algorithm>
 #include <span>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/report/workcell_page.hpp"
+#include "page/workcell_page.hpp"
 
 #include <algorithm>
 

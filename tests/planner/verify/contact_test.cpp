@@ -13,7 +13,6 @@
 #include "swivel/core/answer/answer.hpp"
 #include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
-#include "swivel/core/motion/job_text.hpp"
 #include "swivel/core/problem/problem.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/certificate/infeasibility_certificate.hpp"

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "answer/text/answer_words.hpp"
+#include "swivel/core/answer/timed_text.hpp"
 #include "swivel/core/base/types.hpp"
 #include "swivel/core/messages/formatted.hpp"
 
@@ -136,6 +137,12 @@ std::string answer_text(const Answer& answer, const Problem& problem) {
   if (!is_path(problem)) return text_of_strokes(answer, problem);
   const ArmAnswer& arm = answer.arm();
   return run_text(arm.run(), arm.held, answer.has_rows() ? &arm.parts.front() : nullptr);
+}
+
+std::string whole_text(const Answer& answer, const Problem& problem, const AnyAdvice* advice) {
+  const std::string text =
+      answer_text(answer, problem) + (advice != nullptr ? advice_text(*advice) : "");
+  return is_path(problem) ? text : text + refined_text(answer) + timed_text(answer, problem);
 }
 
 std::string answer_text(const PlanResult& result) {

@@ -3,12 +3,11 @@
 // wrong and what is allowed.
 #pragma once
 #include "swivel/io/files/files.hpp"
-#include "swivel/io/jobs/job_trajectory.hpp"
 #include "swivel/io/meshes/mesh.hpp"
+#include "swivel/io/motions/motion.hpp"
 #include "swivel/io/motions/trajectory.hpp"
 #include "swivel/io/problems/problem.hpp"
 #include "swivel/io/results/given_answer.hpp"
 #include "swivel/io/results/result.hpp"
 #include "swivel/io/robots/robot.hpp"
 #include "swivel/io/tables/campaign.hpp"
-#include "swivel/io/workcells/workcell_csv.hpp"

@@ -5,6 +5,7 @@
 
 #include "swivel/core/answer/timed_path.hpp"
 #include "swivel/core/problem/robot_model.hpp"
+#include "swivel/planner/problem/problem_planner.hpp"
 #include "swivel/report/lattice_map.hpp"
 
 namespace swivel {
@@ -37,6 +38,17 @@ struct PageWords {
 /// Stopped.
 [[nodiscard]] std::string to_page(const PlanView& view, const LatticeMap& map,
                                   const std::string& result_json, const PageMotion& motion = {},
+                                  const Budget& budget = {}, const PageWords& words = {});
+
+/// Returns the page of the last answer of a planner that kept its view, which must not be empty:
+/// one HTML file that needs nothing else, with one path as above; with strokes and transitions in
+/// the order in which they are executed; or with both arms, moved together, and where these meet if
+/// each has a path by itself and both together have none. `result_json`: the result in the format
+/// of `--json`. `map`: of one path; null: it is made. The file is made after planning: clearances
+/// along the rows are asked for again. page_available() says whether this build can make it. Throws
+/// Stopped.
+[[nodiscard]] std::string to_page(const ProblemPlanner& planner, const Answer& answer,
+                                  const std::string& result_json, const LatticeMap* map = nullptr,
                                   const Budget& budget = {}, const PageWords& words = {});
 
 }  // namespace swivel

@@ -20,6 +20,10 @@ namespace swivel {
 [[nodiscard]] std::string answer_text(const Answer& answer, const Problem& problem);
 /// Returns the answer of the plan of one path, as answer_text() has that of its problem.
 [[nodiscard]] std::string answer_text(const PlanResult& result);
+/// Returns an answer in full for people: verdict, advice (null: none), refinement and motion, but
+/// of one path the verdict and the advice alone. `problem` is executed_problem() of the answer.
+[[nodiscard]] std::string whole_text(const Answer& answer, const Problem& problem,
+                                     const AnyAdvice* advice = nullptr);
 /// Returns what was found about a run, in the words of the answer of one path. `part`: its rows;
 /// null where there are none.
 [[nodiscard]] std::string run_text(const RunAnswer& run, const std::vector<HeldJoint>& held,

@@ -11,9 +11,9 @@
 
 namespace swivel {
 
-/// What a file states about one arm of an answer: its parts, or its motion in time. Values of rows
-/// that the file does not state are 0, and runs of strokes count as forwards, until
-/// complete_answer() has found them.
+/// What a file, or a caller, states about one arm of an answer: its parts, or its motion in time.
+/// Values of rows that are not stated are 0, and runs of strokes whose directions are not stated
+/// count as forwards, until complete_answer() has found them.
 struct GivenArm {
   /// Runs and transitions in their order. Empty where rows have times.
   std::vector<Part> parts;
@@ -23,9 +23,10 @@ struct GivenArm {
   std::optional<ArmMotion> motion;  ///< set where rows have times
   std::vector<StrokeRun> order;     ///< runs of the motion, in their order
   Stated stated;
+  bool states_directions = false;  ///< StrokeRun::reversed of each run is stated
 };
 
-/// An answer as a file states it, for check_answer() and time_answer().
+/// An answer as a file or a caller states it, for check_answer() and time_answer().
 struct GivenAnswer {
   /// The problem of which the rows are: where they have lift-offs, with_lift_offs().
   Problem problem;

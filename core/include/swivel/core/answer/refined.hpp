@@ -11,7 +11,8 @@ namespace swivel {
 
 /// A lattice's path, refined or not, and how it changed.
 struct Refined {
-  std::vector<TrajectoryRow> rows;  ///< the refined rows, or those given
+  std::vector<TrajectoryRow> rows;         ///< the refined rows, or those given
+  std::vector<TrajectoryRow> rows_before;  ///< those given
   bool refined = false;
   std::string reason;                ///< why the rows are those given
   double cost_before = 0, cost = 0;  ///< by the problem's cost metric

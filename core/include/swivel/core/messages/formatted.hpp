@@ -12,5 +12,7 @@ namespace swivel {
 /// Formats like formatted(), from a list of arguments.
 [[nodiscard, gnu::format(printf, 1, 0)]] std::string formatted_list(const char* format,
                                                                     std::va_list arguments);
+/// Returns a share of 1 as a percentage: "42 %", "3.4 %".
+[[nodiscard]] std::string percent(double share);
 
 }  // namespace swivel

@@ -27,10 +27,11 @@ struct AnswerExtras {
                                   const AnswerExtras& extras = {});
 /// Returns RESULT.json of the plan of one path as text.
 [[nodiscard]] std::string to_json(const PlanResult& result);
-/// Returns the motion of an answer in the format of the file name's ending, as motion_text() has
-/// that of one path, job_motion_text() that of strokes, workcell_motion_text() that of two arms.
-/// The answer must have one; `problem` is executed_problem() of it. Throws InputError for any other
-/// ending.
+/// Returns the motion of an answer in the format of the file name's ending: .csv, .json, .yaml or
+/// .mcap, docs/formats.md "Motion"; of strokes with the events that switch the process, of two arms
+/// with the joints of both. The answer must have one; `problem` is executed_problem() of it. Throws
+/// InputError for any other ending, and in CSV for a stroke that begins and ends between two
+/// samples.
 [[nodiscard]] std::string motion_text(const Answer& answer, const Problem& problem,
                                       const std::filesystem::path& file);
 /// Returns CERTIFICATE.json as text, docs/formats.md, with a line for each layer.

@@ -33,8 +33,8 @@ class ProblemPlanner {
  public:
   /// Prepares to plan a problem. It is completed for what is asked: by with_motion_defaults() for a
   /// motion, and by keep_clearance_between_layers() for a refinement alone. Throws InputError and
-  /// InvalidArgument as Planner, PreparedRobot and PreparedWorkcell do.
-  explicit ProblemPlanner(Problem problem, MotionRequest asked = {});
+  /// InvalidArgument as Planner, PreparedRobot and PreparedWorkcell do, and Stopped.
+  explicit ProblemPlanner(Problem problem, MotionRequest asked = {}, const Budget& budget = {});
   ~ProblemPlanner();
   ProblemPlanner(ProblemPlanner&&) noexcept;
   ProblemPlanner& operator=(ProblemPlanner&&) noexcept;

@@ -18,15 +18,13 @@
 #include <string>
 #include <typeinfo>
 
-#include "members.hpp"
-#include "problem.hpp"
-#include "results.hpp"
-#include "runs.hpp"
+#include "base/bindings.hpp"
+#include "base/members.hpp"
 #include "swivel/core/answer/advice.hpp"
+#include "swivel/core/answer/answer.hpp"
 #include "swivel/core/base/fnv1a.hpp"
 #include "swivel/core/study/campaign.hpp"
 #include "swivel/core/study/placement.hpp"
-#include "swivel/planner/refine/motion.hpp"
 #include "swivel/planner/verify/check.hpp"
 
 namespace cereal {
@@ -108,6 +106,15 @@ void serialize(A& archive, ArmTask& x) {
   archive(static_cast<Robot&>(x), x.name, x.strokes, x.given, x.transition_limits, x.home, x.order,
           x.process_speed, x.approach_speed, x.rapid, x.lift);
 }
+/// Lists the members of a WorkcellAdvice and of its base.
+template <class A>
+void serialize(A& archive, WorkcellAdvice& x) {
+  struct Listed : Advice {
+    std::string arm;
+  };
+  static_assert(sizeof(Listed) == sizeof(WorkcellAdvice));
+  archive(static_cast<Advice&>(x), x.arm);
+}
 /// Lists the members of a LiftOffAnswer and of its base, which no structured binding takes apart
 /// together.
 template <class A>
@@ -146,33 +153,6 @@ void serialize(A& archive, ArmMotion& x) {
   static_assert(sizeof(Listed) == sizeof(ArmMotion));
   archive(static_cast<TimedPath&>(x), x.name, x.part, x.events, x.runs);
 }
-/// Lists the members of a PlanResult and of its base.
-template <class A>
-void serialize(A& archive, PlanResult& x) {
-  struct Listed : RunAnswer {
-    double cost;
-    std::string planner;
-    int threads;
-    Counters counters;
-    std::map<std::string, double> time_ms;
-    std::vector<TrajectoryRow> trajectory;
-    bool checked;
-    std::vector<TrajectoryRow> partial;
-    std::array<std::string, kDof> joint_names;
-    std::vector<HeldJoint> held;
-    std::vector<SpecialPair> dropped_pairs, reduced_pairs;
-    std::vector<std::string> warnings;
-  };
-  static_assert(sizeof(Listed) == sizeof(PlanResult));
-  archive(static_cast<RunAnswer&>(x), x.cost, x.planner, x.threads, x.counters, x.time_ms,
-          x.trajectory, x.checked, x.partial, x.joint_names, x.held, x.dropped_pairs,
-          x.reduced_pairs, x.warnings);
-}
-template <class A>
-void serialize(A& archive, MotionResult& x) {
-  archive(static_cast<TimingResult&>(x), x.time_ms, x.check_ms);
-}
-
 template <class A>
 void serialize(A& archive, EpisodeRow& x) {
   auto& [episode, status, cost, plan_ms, nodes_checked, fcl_calls, error_mean, error_max, failed_s,
@@ -184,35 +164,6 @@ void serialize(A& archive, EpisodeRow& x) {
 namespace python {
 
 using swivel::serialize;  // of structs of this namespace as well
-
-/// Lists the members of a Problem and of its base, which no structured binding takes apart
-/// together.
-template <class A>
-void serialize(A& archive, Problem& x) {
-  struct Listed : PathProblem {
-    StrokeList strokes;
-    std::optional<Config> home;
-    StrokeOrder order;
-    Vector3d approach, retract;
-    std::optional<double> process_speed, approach_speed;
-    double rapid;
-    std::optional<LiftOffs> lift;
-    std::shared_ptr<const swivel::Problem> two;
-  };
-  static_assert(sizeof(Listed) == sizeof(Problem));
-  std::optional<std::vector<Stroke>> strokes;
-  if (x.strokes.list) strokes = x.strokes.all();
-  archive(static_cast<PathProblem&>(x), strokes, x.home, x.order, x.approach, x.retract,
-          x.process_speed, x.approach_speed, x.rapid, x.lift, x.two);
-  if (A::is_loading::value && strokes) x.strokes.set(*strokes);
-}
-
-/// Leaves out the problem, which would be most of a plan.
-template <class A>
-void serialize(A& archive, Plan& x) {
-  auto& [plan, timing, frame, refined, own_functions, problem] = x;
-  archive(plan, timing, frame, refined, own_functions);
-}
 
 /// Returns the checksum of bytes that stand for a T. The name of the class is part of it, so that
 /// the same bytes of another class have another checksum.

@@ -1,26 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Certificates that a problem has no path or a workcell no plan, and what verifies them.
+// Certificates that problems have no answer, and what verifies them.
 #include <algorithm>
 #include <optional>
 #include <variant>
 
-#include "archive.hpp"
-#include "bindings.hpp"
-#include "interruptible.hpp"
+#include "answers/answer.hpp"
+#include "base/archive.hpp"
+#include "base/interruptible.hpp"
 #include "plan_keywords.hpp"
-#include "problem.hpp"
+#include "problems/problem.hpp"
 #include "swivel/core/answer/answer_text.hpp"
-#include "swivel/core/answer/infeasibility_certificate.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/certificate/infeasibility_certificate.hpp"
-#include "swivel/planner/plan/plan_view.hpp"
-#include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/problem/problem_planner.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/workcell/check_workcell.hpp"
-#include "swivel/planner/workcell/plan_workcell.hpp"
-#include "workcells/workcell_plan.hpp"
 
 namespace swivel {
 
@@ -28,55 +24,65 @@ namespace python {
 
 namespace {
 
-/// Plans a problem, and returns the certificate that it has no path; nothing where it has one.
-/// Throws TimeoutError.
-std::optional<InfeasibilityCertificate> certificate_of(const Problem& given, const py::object& kind,
-                                                       int threads, std::optional<double> timeout) {
+/// Plans a problem, and returns the certificate that it has no answer; nothing where it has one.
+/// Throws ValueError where there is no certificate, and TimeoutError.
+std::optional<AnyCertificate> certificate_of(const Problem& of, const py::object& kind, int threads,
+                                             std::optional<double> timeout) {
   PlanOptions options = to_plan_options(kind, threads, timeout);
-  const PathProblem problem = path_of(given, "certificate");
-  return interruptible([&](const std::stop_token& stop) -> std::optional<InfeasibilityCertificate> {
+  const swivel::Problem problem = to_core(of);
+  return interruptible([&](const std::stop_token& stop) -> std::optional<AnyCertificate> {
     const Budget budget(timeout, nullptr, stop);
     options.stop = stop;
-    Planner planner(problem);
-    const PlanResult result = planner.plan(options);
-    if (result.status == PlanStatus::kSolved) return std::nullopt;
-    if (result.status != PlanStatus::kInfeasible) throw Stopped();
-    return prove_infeasible(planner.view(), budget);
+    ProblemPlanner planner(problem, {}, budget);
+    swivel::Answer answer = planner.plan(options, true);
+    if (answer.status == PlanStatus::kSolved) return std::nullopt;
+    if (answer.status != PlanStatus::kInfeasible) throw Stopped();
+    answer.warnings.clear();
+    auto proof = planner.prove_infeasible(answer, budget);
+    if (!proof) throw py::value_error(answer.warnings.front());
+    return proof;
   });
 }
 
-/// Verifies the certificate that a stroke of a job has no path. Throws InputError for a stroke that
-/// the job does not have.
-CertificateCheck verdict_on_stroke(const Problem& of, const InfeasibilityCertificate& certificate,
-                                   std::optional<double> timeout) {
-  const swivel::Problem job = to_core(of);
-  const auto stroke = find_stroke(job, certificate.stroke);
+/// Returns the run that a certificate is about. Throws InputError for the certificate of another
+/// problem.
+PathProblem problem_of(const swivel::Problem& problem,
+                       const InfeasibilityCertificate& certificate) {
+  if (problem.arms.size() == 2)
+    throw InputError("certificate", "is of one arm: allowed is a certificate of two arms");
+  if (is_path(problem)) {
+    if (!certificate.stroke.empty())
+      throw InputError("certificate", "stroke: is of stroke '" + certificate.stroke +
+                                          "': allowed is a certificate of one path");
+    return problem_of_run(problem, {0, false});
+  }
+  const auto stroke = find_stroke(problem, certificate.stroke);
   if (!stroke)
     throw InputError("certificate", "stroke: '" + certificate.stroke +
                                         "' is none of the job: allowed are the names of its "
                                         "strokes");
-  if (certificate.reversed && !job.arm().strokes[*stroke].reversible)
+  if (certificate.reversed && !problem.arm().strokes[*stroke].reversible)
     throw InputError("certificate", "reversed: stroke '" + certificate.stroke +
                                         "' is not `reversible`: allowed is a certificate of it "
                                         "forwards");
-  const PathProblem problem = problem_of_run(job, {*stroke, certificate.reversed});
-  return interruptible([&](const std::stop_token& stop) {
-    const Budget budget(timeout, nullptr, stop);
-    return verify_certificate(PreparedRobot(problem, budget), problem, certificate, budget);
-  });
+  return problem_of_run(problem, {*stroke, certificate.reversed});
 }
 
-CertificateCheck verdict_on(const Problem& given, const InfeasibilityCertificate& certificate,
-                            std::optional<double> timeout) {
-  if (!certificate.stroke.empty() && !given.strokes.list)
-    throw InputError("certificate", "stroke: is of stroke '" + certificate.stroke +
-                                        "' of a job: allowed is a certificate of one path");
-  if (given.strokes.list) return verdict_on_stroke(given, certificate, timeout);
-  const PathProblem problem = path_of(given, "certificate");
-  return interruptible([&](const std::stop_token& stop) {
-    const Budget budget(timeout, nullptr, stop);
-    return verify_certificate(PreparedRobot(problem, budget), problem, certificate, budget);
-  });
+std::variant<CertificateCheck, WorkcellCertificateCheck> verdict_on(
+    const Problem& of, const AnyCertificate& certificate, std::optional<double> timeout) {
+  const swivel::Problem whole = to_core(of);
+  const auto* const of_run = std::get_if<InfeasibilityCertificate>(&certificate);
+  if (of_run == nullptr && whole.arms.size() != 2)
+    throw InputError("certificate", "is of two arms: allowed is a certificate of one");
+  const PathProblem problem = of_run != nullptr ? problem_of(whole, *of_run) : PathProblem();
+  return interruptible(
+      [&](const std::stop_token& stop) -> std::variant<CertificateCheck, WorkcellCertificateCheck> {
+        const Budget budget(timeout, nullptr, stop);
+        if (of_run != nullptr)
+          return verify_certificate(PreparedRobot(problem, budget), problem, *of_run, budget);
+        return verify_certificate(PreparedWorkcell(whole, budget),
+                                  std::get<WorkcellCertificate>(certificate), budget);
+      });
 }
 
 std::string words_of(const InfeasibilityCertificate& certificate) {
@@ -88,31 +94,6 @@ std::string words_of(const InfeasibilityCertificate& certificate) {
          formatted("no path, layers %d to %zu of %d: ", certificate.first_layer,
                    certificate.first_layer + certificate.band.size() - 1, certificate.layers) +
          removed_text(certificate) + ">";
-}
-
-/// Returns the certificate that a workcell has no plan. Throws ValueError for another plan.
-WorkcellCertificate proof_of(const WorkcellPlan& plan, const Problem* given,
-                             std::optional<double> timeout) {
-  if (plan.plan->status != PlanStatus::kInfeasible)
-    throw py::value_error(std::string("the plan is '") + to_string(plan.plan->status) +
-                          "': allowed is one that is infeasible");
-  if (plan.refined || plan.timing)
-    throw py::value_error(
-        "a certificate is of the workcell as it is: allowed is a plan without refine and speed");
-  return interruptible([&](const std::stop_token& stop) {
-    const Budget budget(timeout, nullptr, stop);
-    return prove_infeasible(PreparedWorkcell(completed(plan, given), budget), budget);
-  });
-}
-
-WorkcellCertificateCheck verdict_on_workcell(const Problem& problem,
-                                             const WorkcellCertificate& proof,
-                                             std::optional<double> timeout) {
-  const auto cell = two_arms_of(&problem);
-  return interruptible([&](const std::stop_token& stop) {
-    const Budget budget(timeout, nullptr, stop);
-    return verify_certificate(PreparedWorkcell(*cell, budget), proof, budget);
-  });
 }
 
 /// Returns how many sets of pairs are divided by a region of conflict.
@@ -186,9 +167,6 @@ void bind_workcell_certificates(py::module_& m) {
                          static_cast<long long>(x.regions), static_cast<long long>(x.cuts));
       });
   m.def("_load_workcell_certificate", &io::load_workcell_certificate);
-  m.def("_check_workcell_certificate", &verdict_on_workcell);
-  m.def("_workcell_certificate", &proof_of, py::arg("plan"), py::arg("workcell"),
-        py::arg("timeout"));
 }
 
 }  // namespace
@@ -260,10 +238,8 @@ void bind_certificates(py::module_& m) {
                          x.s[1]);
       });
   m.def("_load_certificate", &io::load_certificate);
-  m.def("_certificate", &certificate_of, py::arg("problem"), py::arg("planner"), py::arg("threads"),
-        py::arg("timeout"));
-  m.def("_check_certificate", &verdict_on, py::arg("problem"), py::arg("certificate"),
-        py::arg("timeout"));
+  m.def("_certificate", &certificate_of);
+  m.def("_check_certificate", &verdict_on);
 }
 
 }  // namespace python

@@ -4,10 +4,9 @@
 #include <optional>
 #include <variant>
 
-#include "archive.hpp"
-#include "bindings.hpp"
-#include "interruptible.hpp"
-#include "runs.hpp"
+#include "base/archive.hpp"
+#include "base/bindings.hpp"
+#include "base/interruptible.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/kinematics/srs/arm_guess.hpp"

@@ -216,14 +216,12 @@ class PlainStruct {
 };
 
 void bind_problem(py::module_& m);
-void bind_results(py::module_& m);
 void bind_planner(py::module_& m);
+void bind_functions(py::module_& m);
 void bind_runs(py::module_& m);
-void bind_workcell(py::module_& m);
 void bind_states(py::module_& m);
 void bind_drawings(py::module_& m);
 void bind_certificates(py::module_& m);
-void bind_job_drawings(py::module_& m);
 
 }  // namespace swivel::python
 

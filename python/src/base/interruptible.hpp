@@ -11,7 +11,7 @@
 #include <thread>
 #include <type_traits>
 
-#include "bindings.hpp"
+#include "base/bindings.hpp"
 #include "swivel/core/base/budget.hpp"
 
 namespace swivel::python {

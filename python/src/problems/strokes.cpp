@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Bindings of strokes.
-#include "problem.hpp"
+#include "problems/problem.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "interruptible.hpp"
-#include "job_archive.hpp"
-#include "runs.hpp"
+#include "base/archive.hpp"
+#include "base/interruptible.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/io/io.hpp"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Bindings of problems: one path, strokes, or two arms.
-#include "problem.hpp"
+#include "problems/problem.hpp"
 
 #include <algorithm>
 
-#include "archive.hpp"
-#include "interruptible.hpp"
-#include "runs.hpp"
+#include "base/archive.hpp"
+#include "base/interruptible.hpp"
+#include "base/trajectory.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
@@ -83,12 +83,13 @@ std::string problem_words(const Problem& problem) {
          std::to_string(problem.scene.size()) + " objects>";
 }
 
-/// Returns the problem of each arm by itself.
-std::vector<Problem> arms_of(const Problem& problem) {
-  if (!problem.two) return {problem};
-  std::vector<Problem> arms;
-  for (const ArmTask& arm : problem.two->arms)
-    arms.emplace_back(problem_of_path(*problem.two, arm, arm.path()));
+/// Returns the problem of each arm by itself, by its name.
+Typed<"dict[str, Problem]"> arms_of(const Problem& problem) {
+  py::dict arms;
+  if (!problem.two) arms[""] = py::cast(problem);
+  if (problem.two)
+    for (const ArmTask& arm : problem.two->arms)
+      arms[arm.name.c_str()] = py::cast(Problem(problem_of_path(*problem.two, arm, arm.path())));
   return arms;
 }
 
@@ -339,6 +340,17 @@ const PathProblem& path_of(const Problem& problem, const char* what) {
   return problem;
 }
 
+Movable to_movable(const std::optional<std::string>& object, bool path, bool base, bool only_held,
+                   const std::optional<std::string>& arm) {
+  if (arm && !path) throw InvalidArgument("arm: whose path is moved: allowed with path=True");
+  if (only_held && !object && !path && !base) return {Movable::Kind::kNothing, ""};
+  if (static_cast<int>(object.has_value()) + static_cast<int>(path) + static_cast<int>(base) != 1)
+    throw InvalidArgument(
+        "object, path, base: what is to be moved: allowed is exactly one of the three");
+  if (object) return {Movable::Kind::kObject, *object};
+  return {path ? Movable::Kind::kPath : Movable::Kind::kBase, {}, arm.value_or("")};
+}
+
 void bind_whole_problem(py::module_& m) {
   py::class_<Problem, Robot, Task> type(
       m, "Problem",
@@ -363,16 +375,8 @@ void bind_whole_problem(py::module_& m) {
       .def_property_readonly(
           "task", [](const Problem& problem) { return Task(problem); }, "A copy, of one path.")
       .def_property_readonly("arms", &arms_of,
-                             "The problem of each of two arms by itself; else this one. Copies.")
-      .def_property_readonly(
-          "names",
-          [](const Problem& problem) {
-            std::vector<std::string> names;
-            if (problem.two)
-              for (const ArmTask& arm : problem.two->arms) names.push_back(arm.name);
-            return names;
-          },
-          "Of two arms, in the order of `arms`; else empty.")
+                             "Name of the arm -> its problem by itself, a copy; '' where there is "
+                             "one arm.")
       .def(
           "validate",
           [](const Problem& problem) {

@@ -7,8 +7,9 @@
 #include <variant>
 #include <vector>
 
-#include "bindings.hpp"
+#include "base/bindings.hpp"
 #include "swivel/core/problem/problem.hpp"
+#include "swivel/core/study/placement.hpp"
 
 namespace swivel::python {
 
@@ -65,6 +66,28 @@ struct Problem : PathProblem {
   explicit Problem(PathProblem path) : PathProblem(std::move(path)) {}
 };
 
+/// Lists the members of a Problem and of its base, which no structured binding takes apart
+/// together.
+template <class A>
+void serialize(A& archive, Problem& x) {
+  struct Listed : PathProblem {
+    StrokeList strokes;
+    std::optional<Config> home;
+    StrokeOrder order;
+    Vector3d approach, retract;
+    std::optional<double> process_speed, approach_speed;
+    double rapid;
+    std::optional<LiftOffs> lift;
+    std::shared_ptr<const swivel::Problem> two;
+  };
+  static_assert(sizeof(Listed) == sizeof(Problem));
+  std::optional<std::vector<Stroke>> strokes;
+  if (x.strokes.list) strokes = x.strokes.all();
+  archive(static_cast<PathProblem&>(x), strokes, x.home, x.order, x.approach, x.retract,
+          x.process_speed, x.approach_speed, x.rapid, x.lift, x.two);
+  if (A::is_loading::value && strokes) x.strokes.set(*strokes);
+}
+
 /// Returns where the tool stands before a stroke or after it, m in the tool frame, from a distance
 /// against the tool's z axis or a vector. Throws ValueError, with `what` as the argument's name.
 [[nodiscard]] Vector3d to_offset(py::handle source, const char* what);
@@ -87,6 +110,20 @@ using ArmsByName = Typed<"dict[str, Problem | tuple[Robot, Trajectory]]", py::di
 [[nodiscard]] Problem problem_of_arms(const ArmsByName& arms,
                                       const std::vector<std::array<std::string, 2>>& touch,
                                       const std::vector<int>& at_rows);
+
+/// Returns what place() and `Problem.placed` move: exactly one of the three, or where joints alone
+/// are held elsewhere (`only_held`) none. Throws InvalidArgument otherwise, and for an arm whose
+/// path is not moved.
+[[nodiscard]] Movable to_movable(const std::optional<std::string>& object, bool path, bool base,
+                                 bool only_held = false,
+                                 const std::optional<std::string>& arm = {});
+
+/// Returns a problem, a job or a workcell with joints held elsewhere. Throws InvalidArgument.
+template <class Planned>
+Planned held_as(Planned planned, const HeldPositions& positions) {
+  hold_joints(planned, positions);
+  return planned;
+}
 
 void bind_strokes(py::module_& m);
 void bind_whole_problem(py::module_& m);
