@@ -72,7 +72,7 @@ struct PlanRequest {
 /// What was found.
 struct PlanFindings {
   Answer answer{};
-  std::optional<AnyAdvice> advice{};      ///< with --advise, where there is no answer
+  std::optional<AdviceList> advice{};      ///< with --advise, where there is no answer
   std::optional<AnyCertificate> proof{};  ///< with --certificate, where there is no answer
   std::string certificate{};              ///< `proof` as JSON
   std::optional<LatticeMap> map{};        ///< of one path; unset if nothing is drawn

@@ -101,7 +101,7 @@ std::string words_of_certificate(const AnyCertificate& certificate, std::size_t 
 }  // namespace
 
 void print_answer(const Answer& answer, const Problem& problem,
-                  const std::optional<AnyAdvice>& advice,
+                  const std::optional<AdviceList>& advice,
                   const std::optional<AnyCertificate>& certificate, std::size_t bytes) {
   if (answer.arms.size() == 2) {
     say_text(whole_text(answer, problem, advice ? &*advice : nullptr) + work_of_two_arms(answer));

@@ -12,7 +12,7 @@ namespace swivel::cli {
 /// Prints an answer with the times and the work of its plan, its certificate, of a size in bytes,
 /// and its advice on standard output, and its warnings on standard error.
 void print_answer(const Answer& answer, const Problem& problem,
-                  const std::optional<AnyAdvice>& advice,
+                  const std::optional<AdviceList>& advice,
                   const std::optional<AnyCertificate>& certificate, std::size_t bytes);
 
 /// Prints what timing made of an answer: its refinement unless `quiet`, the main figures of its

@@ -123,13 +123,13 @@ AdviceList advise(const Problem& of, const Answer& answer, double timeout) {
   const bool strokes = !answer.has_paths();
   if (answer.found->arms.size() != problem.arms.size() || strokes != has_strokes(problem))
     throw InvalidArgument("plan: is of another problem: allowed is an answer to this one");
-  return {interruptible([&](const std::stop_token& stop) {
+  return interruptible([&](const std::stop_token& stop) {
     PlanOptions options;
     options.timeout_s = timeout;
     options.stop = stop;
     const ProblemPlanner planner(problem, {}, Budget({}, nullptr, stop));
     return planner.advise(*answer.found, options);
-  })};
+  });
 }
 
 // --- rows from files

@@ -178,12 +178,12 @@ class SharedPlanner {
     require_path(answer, "advise");
     static_cast<void>(to_timeout(timeout));
     planner_.set_task(task_);
-    return {interruptible([&](const std::stop_token& stop) {
+    return interruptible([&](const std::stop_token& stop) {
       PlanOptions options;
       options.timeout_s = timeout;
       options.stop = stop;
-      return swivel::advise(planner_, answer.found->arm().run(), options);
-    })};
+      return AdviceList{swivel::advise(planner_, answer.found->arm().run(), options), {}};
+    });
   }
 
  private:

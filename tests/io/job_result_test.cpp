@@ -392,11 +392,10 @@ TEST(JobResult, KeysAreThoseOfTheSchema) {
   Answer lifted = plan_of_two();
   lifted.arm().lift_offs.push_back({{0, 0.05, 0.05}, 0.06, {.kind = Cause::Kind::kSingular}});
   add_keys(Json::parse(to_json(lifted, executed_problem(two_strokes(), lifted))), "", seen);
-  AdviceOnJob advice;
-  advice.job.push_back({.change = JobAdvice::Change::kHome, .strokes = {}, .home = Config::Zero()});
-  advice.strokes.push_back({"left", {Advice{}}});
-  const AnyAdvice any = advice;
-  add_keys(Json::parse(to_json(without_a_job(true), two_strokes(), {.advice = &any})), "", seen);
+  AdviceList advice;
+  advice.changes.push_back({.change = Advice::Change::kHome, .home = Config::Zero()});
+  advice.alone.push_back({"left", false, {Advice{}}});
+  add_keys(Json::parse(to_json(without_a_job(true), two_strokes(), {.advice = &advice})), "", seen);
   for (const std::string& key : seen) EXPECT_TRUE(known.contains(key)) << key;
   // The parts that plans have as well are tested with those (result_test.cpp, tests/docs).
   for (const std::string& key : known) {

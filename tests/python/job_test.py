@@ -421,7 +421,7 @@ class JobAnswers(unittest.TestCase):
         advice = swivel.advise(job, plan, timeout=30)
         self.assertEqual(
             (advice[0].change, advice[0].strokes, advice[0].outcome),
-            (swivel.JobChange.WITHOUT_STROKES, ["row_1"], swivel.Outcome.SOLVED)
+            (swivel.Change.WITHOUT_STROKES, ["row_1"], swivel.Outcome.SOLVED)
         )
         self.assertEqual(list(advice.alone), ["row_1"])
         self.assertIn("would help: stroke 'row_1' left out", str(advice))

@@ -3,7 +3,10 @@
 
 #include <cmath>
 #include <cstdio>
+#include <optional>
+#include <utility>
 
+#include "answer/stroke_words.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/messages/formatted.hpp"
 
@@ -72,6 +75,20 @@ const char* to_string(Advice::Change change) {
       return "leads";
     case Advice::Change::kMovePaths:
       return "move_paths";
+    case Advice::Change::kWithoutStrokes:
+      return "without_strokes";
+    case Advice::Change::kReversed:
+      return "reversed";
+    case Advice::Change::kBestOrder:
+      return "best_order";
+    case Advice::Change::kHome:
+      return "home";
+    case Advice::Change::kApproach:
+      return "approach";
+    case Advice::Change::kRetract:
+      return "retract";
+    case Advice::Change::kLines:
+      return "lines";
     default:
       return "?";
   }
@@ -91,7 +108,41 @@ const char* to_string(Advice::Outcome outcome) {
   return "?";
 }
 
-std::string words(const Advice& advice) {
+namespace {
+
+/// Returns a change of strokes in a phrase; nothing for another change.
+std::optional<std::string> words_of_strokes(const Advice& advice) {
+  switch (advice.change) {
+    case Advice::Change::kWithoutStrokes:
+      return stroke_or_strokes(advice.strokes) + " left out";
+    case Advice::Change::kReversed:
+      return stroke_or_strokes(advice.strokes) + " run backwards";
+    case Advice::Change::kBestOrder:
+      return "order: best";
+    case Advice::Change::kApproach:
+      return formatted("an approach of %.0f mm to ", 1e3 * advice.length.value_or(0)) +
+             stroke_or_strokes(advice.strokes);
+    case Advice::Change::kRetract:
+      return formatted("a retract of %.0f mm behind ", 1e3 * advice.length.value_or(0)) +
+             stroke_or_strokes(advice.strokes);
+    case Advice::Change::kLines:
+      return formatted("approach and retract of %.0f mm at all strokes",
+                       1e3 * advice.length.value_or(0));
+    case Advice::Change::kHome: {
+      if (!advice.home) return "another home";
+      std::string text;
+      for (const double joint : *advice.home)
+        text += (text.empty() ? "" : ", ") + formatted("%.4f", joint);
+      return "home: {joints: [" + text + "]}";
+    }
+    default:
+      return std::nullopt;
+  }
+}
+
+/// Returns the change without the arm that it is of.
+std::string words_of_change(const Advice& advice) {
+  if (auto of_strokes = words_of_strokes(advice)) return *std::move(of_strokes);
   for (const Limit& limit : kLimits)
     if (limit.change == advice.change) {
       const auto shown = [&](const std::optional<double>& value) {
@@ -130,11 +181,20 @@ std::string words(const Advice& advice) {
     case Advice::Change::kLeads:
       return "leads";
     case Advice::Change::kMovePaths:
-      return "paths moved by " + words(advice.offset, Advice::kMostPathMove);
+      return (advice.arm.empty() ? "both paths" : "path") + std::string(" moved by ") +
+             words(advice.offset, Advice::kMostPathMove);
     default:
       return "no '" + advice.object + "'" +
              (advice.also.empty() ? "" : " and no '" + advice.also + "'");
   }
+}
+
+}  // namespace
+
+std::string words(const Advice& advice) {
+  const std::string change = words_of_change(advice);
+  if (advice.arm.empty()) return change;
+  return "'" + advice.arm + (advice.change == Advice::Change::kLeads ? "' " : "': ") + change;
 }
 
 }  // namespace swivel

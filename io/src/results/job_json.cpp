@@ -37,8 +37,7 @@ class StrokesWriter {
     json["transitions"] = transitions();
     json["lift_offs"] = lift_offs();
     json["no_transition"] = no_transition();
-    json["advice"] =
-        extras_.advice ? advice(std::get<AdviceOnJob>(*extras_.advice)) : Json(nullptr);
+    json["advice"] = extras_.advice ? advice(*extras_.advice) : Json(nullptr);
     json["counters"] = counters_json(arm_.counters);
     json["transition_counters"] = {{"pairs", arm_.transitions.pairs},
                                    {"searches", arm_.transitions.searches},
@@ -47,10 +46,7 @@ class StrokesWriter {
     json["motion"] = motion();
     json["parts"] = parts(arm_.parts);
     json["partial"] = parts(arm_.partial);
-    json["robot_pairs"] = robot_pairs_json(arm_.dropped_pairs, arm_.reduced_pairs);
-    json["held"] = held_json(arm_.held);
-    json["warnings"] = result_.warnings;
-    json["joint_names"] = arm_.joint_names;
+    add_robot(json, arm_, result_.warnings);
     return json;
   }
 
@@ -162,9 +158,9 @@ class StrokesWriter {
             {"bodies", or_null(none->bodies)}};
   }
 
-  [[nodiscard]] static Json advice(const AdviceOnJob& all) {
+  [[nodiscard]] static Json advice(const AdviceList& all) {
     Json job = Json::array(), strokes = Json::array();
-    for (const JobAdvice& one : all.job)
+    for (const Advice& one : all.changes)
       job.push_back({{"change", to_string(one.change)},
                      {"words", words(one)},
                      {"strokes", one.strokes},
@@ -172,8 +168,8 @@ class StrokesWriter {
                      {"home", one.home ? Json(*one.home) : Json(nullptr)},
                      {"outcome", to_string(one.outcome)},
                      {"cost", or_null(one.cost)}});
-    for (const StrokeAdvice& one : all.strokes)
-      strokes.push_back({{"stroke", one.stroke}, {"advice", advice_json(one.advice)}});
+    for (const AdviceAlone& one : all.alone)
+      strokes.push_back({{"stroke", one.name}, {"advice", advice_json(one.advice)}});
     return {{"job", job}, {"strokes", strokes}};
   }
 

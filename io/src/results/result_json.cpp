@@ -77,18 +77,13 @@ Json path_json(const Answer& answer, const AnswerExtras& extras) {
   json["diagnosis"] = answer.status == PlanStatus::kInfeasible && run.diagnosis
                           ? diagnosis_json(*run.diagnosis)
                           : Json(nullptr);
-  json["advice"] =
-      extras.advice ? advice_json(std::get<std::vector<Advice>>(*extras.advice)) : Json(nullptr);
+  json["advice"] = extras.advice ? advice_json(extras.advice->changes) : Json(nullptr);
   json["certificate"] = extras.certificate
                             ? certificate_json(*extras.certificate, extras.certificate_bytes)
                             : Json(nullptr);
   json["trajectory"] = trajectory_json(arm.rows());
-  json["partial"] = trajectory_json(arm.partial.empty() ? std::vector<TrajectoryRow>()
-                                                        : arm.partial.front().rows);
-  json["robot_pairs"] = robot_pairs_json(arm.dropped_pairs, arm.reduced_pairs);
-  json["held"] = held_json(arm.held);
-  json["warnings"] = answer.warnings;
-  json["joint_names"] = arm.joint_names;
+  json["partial"] = partial_json(arm);
+  add_robot(json, arm, answer.warnings);
   return json;
 }
 

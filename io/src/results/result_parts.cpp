@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "results/result_parts.hpp"
 
+#include "tables/run_settings.hpp"
+
 namespace swivel::io {
 
 Json lattice_json(const LatticeInfo& lattice, bool solved) {
@@ -200,9 +202,17 @@ Json peaks_json(const TimedPath& motion, const JointNames& names) {
 
 }  // namespace
 
-Json robot_pairs_json(const std::vector<SpecialPair>& dropped,
-                      const std::vector<SpecialPair>& reduced) {
-  return {{"dropped", dropped_json(dropped)}, {"reduced", reduced_json(reduced)}};
+void add_robot(Json& json, const ArmAnswer& arm, const std::vector<std::string>& warnings) {
+  json["robot_pairs"] = {{"dropped", dropped_json(arm.dropped_pairs)},
+                         {"reduced", reduced_json(arm.reduced_pairs)}};
+  json["held"] = held_json(arm.held);
+  json["warnings"] = warnings;
+  json["joint_names"] = arm.joint_names;
+}
+
+Json partial_json(const ArmAnswer& arm) {
+  return trajectory_json(arm.partial.empty() ? std::vector<TrajectoryRow>()
+                                             : arm.partial.front().rows);
 }
 
 void add_measures(Json& json, const Measures& result, bool solved) {

@@ -44,8 +44,10 @@ Json or_null(const std::optional<T>& value) {
 /// Adds the keys that say how good rows are. `solved` says whether there are any.
 void add_measures(Json& json, const Measures& measures, bool solved);
 
-[[nodiscard]] Json robot_pairs_json(const std::vector<SpecialPair>& dropped,
-                                    const std::vector<SpecialPair>& reduced);
+/// Adds what is known of an arm besides its answer: robot_pairs, held, `warnings`, joint_names.
+void add_robot(Json& json, const ArmAnswer& arm, const std::vector<std::string>& warnings);
+/// Returns the rows of the only part of a partial answer; an empty list where there is none.
+[[nodiscard]] Json partial_json(const ArmAnswer& arm);
 
 /// Returns the text of a file. Names of files and joints need not be UTF-8: what is not is
 /// replaced.

@@ -27,12 +27,8 @@ Json arm_json(const ArmAnswer& arm) {
   json["counters"] = counters_json(arm.counters);
   json["diagnosis"] = run.diagnosis ? diagnosis_json(*run.diagnosis) : Json(nullptr);
   json["trajectory"] = solved ? trajectory_json(arm.rows()) : Json(nullptr);
-  json["partial"] = trajectory_json(arm.partial.empty() ? std::vector<TrajectoryRow>()
-                                                        : arm.partial.front().rows);
-  json["robot_pairs"] = robot_pairs_json(arm.dropped_pairs, arm.reduced_pairs);
-  json["held"] = held_json(arm.held);
-  json["warnings"] = arm.warnings;
-  json["joint_names"] = arm.joint_names;
+  json["partial"] = partial_json(arm);
+  add_robot(json, arm, arm.warnings);
   return json;
 }
 
@@ -89,17 +85,16 @@ Json motion_of_both(const Answer& answer) {
   return json;
 }
 
-Json advice_on_workcell(const AdviceOnWorkcell& all) {
+Json advice_on_workcell(const AdviceList& all) {
   Json cell = Json::array(), arms = Json::array();
-  for (const WorkcellAdvice& one : all.cell) {
+  for (const Advice& one : all.changes) {
     Json json = advice_json(one);
     json.erase("reached_s");
-    json["words"] = words(one);
     json["arm"] = one.arm.empty() ? Json(nullptr) : Json(one.arm);
     cell.push_back(std::move(json));
   }
-  for (const ArmAdvice& one : all.arms)
-    arms.push_back({{"arm", one.arm}, {"advice", advice_json(one.advice)}});
+  for (const AdviceAlone& one : all.alone)
+    arms.push_back({{"arm", one.name}, {"advice", advice_json(one.advice)}});
   return {{"cell", cell}, {"arms", arms}};
 }
 
@@ -127,8 +122,7 @@ Json two_arms_json(const Answer& result, const AnswerExtras& extras) {
                         {"on_motion", conflict->of_motion},
                         {"s", conflict->s},
                         {"bodies", conflict->bodies}};
-  json["advice"] = extras.advice ? advice_on_workcell(std::get<AdviceOnWorkcell>(*extras.advice))
-                                 : Json(nullptr);
+  json["advice"] = extras.advice ? advice_on_workcell(*extras.advice) : Json(nullptr);
   json["between_arms"] = nullptr;
   if (const auto& nearest = result.pair.nearest)
     json["between_arms"] = {{"clearance_mm", 1e3 * nearest->clearance},

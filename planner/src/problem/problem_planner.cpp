@@ -37,7 +37,7 @@ struct ProblemPlanner::Impl {
   Impl(Problem p, MotionRequest a) : problem(completed(std::move(p), a)), asked(std::move(a)) {}
   virtual ~Impl() = default;
   virtual Answer plan(const PlanOptions& options, bool keeps_view) = 0;
-  [[nodiscard]] virtual AnyAdvice advise(const Answer& answer,
+  [[nodiscard]] virtual AdviceList advise(const Answer& answer,
                                          const PlanOptions& options) const = 0;
   [[nodiscard]] virtual std::optional<AnyCertificate> prove(Answer& answer,
                                                             const Budget& budget) const = 0;
@@ -60,8 +60,8 @@ struct ProblemPlanner::OfPath : Impl {
     if (keeps_view && decided) view.runs.push_back(planner.view());
     return answer;
   }
-  [[nodiscard]] AnyAdvice advise(const Answer& answer, const PlanOptions& options) const override {
-    return swivel::advise(planner, answer.arm().run(), options);
+  [[nodiscard]] AdviceList advise(const Answer& answer, const PlanOptions& options) const override {
+    return {swivel::advise(planner, answer.arm().run(), options), {}};
   }
   [[nodiscard]] std::optional<AnyCertificate> prove(Answer& /*answer*/,
                                                     const Budget& budget) const override {
@@ -83,7 +83,7 @@ struct ProblemPlanner::OfStrokes : Impl {
     if (!asked.timing) return plan_job(prepared, problem, options, kept);
     return plan_job_motion(prepared, problem, options, *asked.timing, kept);
   }
-  [[nodiscard]] AnyAdvice advise(const Answer& answer, const PlanOptions& options) const override {
+  [[nodiscard]] AdviceList advise(const Answer& answer, const PlanOptions& options) const override {
     return advise_job(prepared, problem, answer, options);
   }
   [[nodiscard]] std::optional<AnyCertificate> prove(Answer& answer,
@@ -127,7 +127,7 @@ struct ProblemPlanner::OfTwoArms : Impl {
     return plan_workcell_motion(prepared, options, asked.refine, asked.timing,
                                 keeps_view ? &view : nullptr);
   }
-  [[nodiscard]] AnyAdvice advise(const Answer& answer, const PlanOptions& options) const override {
+  [[nodiscard]] AdviceList advise(const Answer& answer, const PlanOptions& options) const override {
     return advise_workcell(problem, answer, options);
   }
   [[nodiscard]] std::optional<AnyCertificate> prove(Answer& /*answer*/,
@@ -158,7 +158,7 @@ Answer ProblemPlanner::plan(const PlanOptions& options, bool keeps_view) {
 const ProblemView& ProblemPlanner::view() const {
   return impl_->view;
 }
-AnyAdvice ProblemPlanner::advise(const Answer& answer, const PlanOptions& options) const {
+AdviceList ProblemPlanner::advise(const Answer& answer, const PlanOptions& options) const {
   return impl_->advise(answer, options);
 }
 std::optional<AnyCertificate> ProblemPlanner::prove_infeasible(Answer& answer,

@@ -34,7 +34,7 @@ class JobTrials {
     options_.evidence = {};
   }
 
-  AdviceOnJob advise() {
+  AdviceList advise() {
     std::vector<std::size_t> without;
     for (const RunAnswer& run : result_.arm().runs)
       if (run.status == PlanStatus::kInfeasible) without.push_back(run.run.stroke);
@@ -42,8 +42,8 @@ class JobTrials {
       advise_on_strokes(without);
     else if (result_.arm().no_transition)
       advise_on_transition(*result_.arm().no_transition);
-    std::stable_sort(advice_.job.begin(), advice_.job.end(),
-                     [](const JobAdvice& a, const JobAdvice& b) { return a.outcome < b.outcome; });
+    std::stable_sort(advice_.changes.begin(), advice_.changes.end(),
+                     [](const Advice& a, const Advice& b) { return a.outcome < b.outcome; });
     return std::move(advice_);
   }
 
@@ -60,7 +60,7 @@ class JobTrials {
     leave_out(without);
     for (const std::size_t stroke : without) reverse(stroke);
     for (std::size_t k = 0; k < without.size(); ++k) {
-      StrokeAdvice& one = advice_.strokes.emplace_back(StrokeAdvice{name(without[k]), {}});
+      AdviceAlone& one = advice_.alone.emplace_back(AdviceAlone{name(without[k]), false, {}});
       PlanOptions options = options_;
       options.timeout_s = seconds_left() / static_cast<double>(without.size() - k);
       if (!(*options.timeout_s > 0)) continue;
@@ -82,19 +82,17 @@ class JobTrials {
     const bool from_home = none.to == 0, to_home = none.to == runs;
     bool lengthened = none.where == Where::kHome;
     if (none.where == Where::kEndBefore || (none.where == Where::kBetween && !from_home))
-      lengthened =
-          lengthen(JobAdvice::Change::kRetract, {result_.arm().runs[none.to - 1].run.stroke});
+      lengthened = lengthen(Advice::Change::kRetract, {result_.arm().runs[none.to - 1].run.stroke});
     if (none.where == Where::kBegin || (none.where == Where::kBetween && !to_home))
-      lengthened =
-          lengthen(JobAdvice::Change::kApproach, {result_.arm().runs[none.to].run.stroke}) ||
-          lengthened;
-    if (!lengthened) lengthen(JobAdvice::Change::kLines, all_strokes());
+      lengthened = lengthen(Advice::Change::kApproach, {result_.arm().runs[none.to].run.stroke}) ||
+                   lengthened;
+    if (!lengthened) lengthen(Advice::Change::kLines, all_strokes());
     if (none.where == Where::kHome || from_home || to_home) move_home();
     if (none.where == Where::kHome) return;
     if (job_.arm().order == StrokeOrder::kGiven && runs > 1) {
       Problem changed = job_;
       changed.arm().order = StrokeOrder::kBest;
-      add({.change = JobAdvice::Change::kBestOrder, .strokes = {}}, changed);
+      add({.change = Advice::Change::kBestOrder}, changed);
     }
     std::vector<std::size_t> beside;
     if (!from_home) beside.push_back(result_.arm().runs[none.to - 1].run.stroke);
@@ -104,7 +102,7 @@ class JobTrials {
   }
 
   /// Notes what planning a changed job gives.
-  Advice::Outcome add(JobAdvice advice, const Problem& changed) {
+  Advice::Outcome add(Advice advice, const Problem& changed) {
     const double seconds = seconds_left();
     if (seconds > 0) {
       PlanOptions options = options_;
@@ -121,14 +119,14 @@ class JobTrials {
         advice.outcome = Advice::Outcome::kNoHelp;
       }
     }
-    advice_.job.push_back(std::move(advice));
-    return advice_.job.back().outcome;
+    advice_.changes.push_back(std::move(advice));
+    return advice_.changes.back().outcome;
   }
 
   void leave_out(std::vector<std::size_t> strokes) {
     std::sort(strokes.begin(), strokes.end());
     if (strokes.size() == job_.arm().strokes.size()) return;
-    JobAdvice advice{.change = JobAdvice::Change::kWithoutStrokes, .strokes = {}};
+    Advice advice{.change = Advice::Change::kWithoutStrokes};
     for (const std::size_t stroke : strokes) advice.strokes.push_back(name(stroke));
     Problem changed = job_;
     for (std::size_t k = strokes.size(); k-- > 0;)
@@ -152,7 +150,7 @@ class JobTrials {
     std::reverse(turned.waypoints.begin(), turned.waypoints.end());
     // a feed holds from its waypoint to the next
     if (turned.feed.size() > 1) std::reverse(turned.feed.begin(), turned.feed.end() - 1);
-    add({.change = JobAdvice::Change::kReversed, .strokes = {name(stroke)}}, changed);
+    add({.change = Advice::Change::kReversed, .strokes = {name(stroke)}}, changed);
   }
 
   [[nodiscard]] std::vector<std::size_t> all_strokes() const {
@@ -162,7 +160,7 @@ class JobTrials {
   }
   /// Tries longer lines of approach, of retract, or of both at some strokes until one length helps.
   /// Returns true if one does.
-  bool lengthen(JobAdvice::Change change, const std::vector<std::size_t>& strokes) {
+  bool lengthen(Advice::Change change, const std::vector<std::size_t>& strokes) {
     for (const double length : kLengths) {
       Problem changed = job_;
       bool any = false;
@@ -171,15 +169,15 @@ class JobTrials {
         line = Vector3d(0, 0, -length);
         any = true;
       };
-      JobAdvice advice{.change = change, .strokes = {}, .length = length};
+      Advice advice{.change = change, .length = length};
       for (const std::size_t stroke : strokes) {
         // the lines of a closed stroke are equal
-        if (job_.arm().strokes[stroke].closed && change != JobAdvice::Change::kLines) continue;
-        if (change != JobAdvice::Change::kRetract) extend(changed.arm().strokes[stroke].approach);
+        if (job_.arm().strokes[stroke].closed && change != Advice::Change::kLines) continue;
+        if (change != Advice::Change::kRetract) extend(changed.arm().strokes[stroke].approach);
         // a given end stands where the retract ends
-        if (change != JobAdvice::Change::kApproach && !job_.arm().strokes[stroke].end)
+        if (change != Advice::Change::kApproach && !job_.arm().strokes[stroke].end)
           extend(changed.arm().strokes[stroke].retract);
-        if (change != JobAdvice::Change::kLines) advice.strokes.push_back(name(stroke));
+        if (change != Advice::Change::kLines) advice.strokes.push_back(name(stroke));
       }
       if (!any) continue;
       const Advice::Outcome outcome = add(std::move(advice), changed);
@@ -191,7 +189,7 @@ class JobTrials {
 
   /// Tries the home at which the cheapest job without one begins.
   void move_home() {
-    JobAdvice advice{.change = JobAdvice::Change::kHome, .strokes = {}};
+    Advice advice{.change = Advice::Change::kHome};
     Problem changed = job_;
     changed.arm().home.reset();
     PlanOptions options = options_;
@@ -207,7 +205,7 @@ class JobTrials {
       }
       if (found.status == PlanStatus::kInfeasible) advice.outcome = Advice::Outcome::kNoHelp;
     }
-    advice_.job.push_back(std::move(advice));
+    advice_.changes.push_back(std::move(advice));
   }
 
   const PreparedRobot& robot_;
@@ -215,13 +213,13 @@ class JobTrials {
   const Answer& result_;
   PlanOptions options_;
   Clock::time_point until_;
-  AdviceOnJob advice_;
+  AdviceList advice_;
 };
 
 }  // namespace
 
-AdviceOnJob advise_job(const PreparedRobot& robot, const Problem& job, const Answer& result,
-                       PlanOptions options) {
+AdviceList advise_job(const PreparedRobot& robot, const Problem& job, const Answer& result,
+                      PlanOptions options) {
   if (result.status != PlanStatus::kInfeasible) return {};
   return JobTrials(robot, job, result, options).advise();
 }

@@ -41,7 +41,7 @@ void let_follower_lead(Problem& cell, std::size_t follower) {
 
 /// Moves the paths that are given in the base frame or in that of an object, or the one of the arm
 /// that the advice names, by its offset in the base frame.
-void move_paths(Problem& cell, const WorkcellAdvice& advice) {
+void move_paths(Problem& cell, const Advice& advice) {
   for (std::size_t k = 0; k < 2; ++k) {
     ArmTask& arm = cell.arms[k];
     if (cell.leader_of(k) >= 0 || (!advice.arm.empty() && arm.name != advice.arm)) continue;
@@ -54,7 +54,7 @@ void move_paths(Problem& cell, const WorkcellAdvice& advice) {
 }
 
 /// Makes the change of the arms that it is about, where it is no change of paths.
-void change_arms(Problem& cell, const WorkcellAdvice& advice) {
+void change_arms(Problem& cell, const Advice& advice) {
   for (ArmTask& arm : cell.arms) {
     if (!advice.arm.empty() && arm.name != advice.arm) continue;
     // a limit of both arms is the stricter one of either: the other one may be relaxed already
@@ -65,7 +65,7 @@ void change_arms(Problem& cell, const WorkcellAdvice& advice) {
 }
 
 /// Returns the workcell with the change.
-Problem changed_workcell(const Problem& cell, const WorkcellAdvice& advice) {
+Problem changed_workcell(const Problem& cell, const Advice& advice) {
   Problem changed = cell;
   if (is_of_scene(advice.change))
     change_scene(advice, changed.scene, changed.vary);
@@ -94,14 +94,14 @@ class WorkcellTrials {
       if (result.arms[k].run().status == PlanStatus::kInfeasible) without_path_.push_back(k);
   }
 
-  AdviceOnWorkcell advise() {
+  AdviceList advise() {
     if (without_path_.empty())
       advise_on_conflict();
     else
       advise_on_arms();
     propose_of_both();
     try_all();
-    std::stable_sort(advice_.cell.begin(), advice_.cell.end(),
+    std::stable_sort(advice_.changes.begin(), advice_.changes.end(),
                      [](const auto& a, const auto& b) { return a.outcome < b.outcome; });
     return std::move(advice_);
   }
@@ -110,7 +110,7 @@ class WorkcellTrials {
   using Clock = std::chrono::steady_clock;
   using Change = Advice::Change;
   using Outcome = Advice::Outcome;
-  using Trial = void (WorkcellTrials::*)(WorkcellAdvice&);
+  using Trial = void (WorkcellTrials::*)(Advice&);
 
   /// Where both arms have a path by themselves: what lets either of them give way.
   void advise_on_conflict() {
@@ -137,7 +137,7 @@ class WorkcellTrials {
   }
   void relax(Change change, const std::string& arm, double from) {
     if (!(from > 0)) return;
-    WorkcellAdvice advice;
+    Advice advice;
     advice.change = change;
     advice.arm = arm;
     advice.from = from;
@@ -169,7 +169,7 @@ class WorkcellTrials {
       const PlanResult alone = planner.plan(options);
       options.timeout_s = std::min(*options.timeout_s, seconds_until(half));
       if (!(*options.timeout_s > 0)) continue;
-      ArmAdvice& of_arm = advice_.arms.emplace_back(ArmAdvice{cell_.arms[k].name, {}});
+      AdviceAlone& of_arm = advice_.alone.emplace_back(AdviceAlone{cell_.arms[k].name, true, {}});
       of_arm.advice = swivel::advise(planner, alone, options);
       std::erase_if(of_arm.advice, [&](const Advice& one) { return !holds_alone(k, one); });
     }
@@ -178,9 +178,10 @@ class WorkcellTrials {
       relax_both(Change::kJointMargin);
       return;
     }
-    if (advice_.arms.empty()) return;
-    for (const Advice& one : advice_.arms.front().advice) {
-      WorkcellAdvice of_cell{one, is_of_scene(one.change) ? "" : advice_.arms.front().arm};
+    if (advice_.alone.empty()) return;
+    for (const Advice& one : advice_.alone.front().advice) {
+      Advice of_cell = one;
+      if (!is_of_scene(one.change)) of_cell.arm = advice_.alone.front().name;
       of_cell.reached_s.reset();
       of_cell.cost.reset();
       if (one.outcome == Outcome::kFurther) of_cell.outcome = Outcome::kNoHelp;
@@ -207,7 +208,7 @@ class WorkcellTrials {
   /// Proposes what changes both arms, or the scene.
   void propose_of_both() {
     for (const SceneObject& object : cell_.scene) {
-      WorkcellAdvice of_object;
+      Advice of_object;
       of_object.object = object.name;
       of_object.change = Change::kMoveObject;
       const bool carried = carries_path(object.name);
@@ -218,12 +219,12 @@ class WorkcellTrials {
     if (!is_given()) propose_moved_paths("");
     for (std::size_t k = 0; k < 2; ++k)
       if (cell_.leader_of(k) >= 0 && may_lead(k)) propose_of_arm(cell_.arms[k], Change::kLeads);
-    WorkcellAdvice finer;
+    Advice finer;
     finer.change = Change::kFiner;
     if (!cell_.given_arm()) propose(finer, &WorkcellTrials::plan_changed);
   }
   void propose_moved_paths(const std::string& arm) {
-    WorkcellAdvice moved;
+    Advice moved;
     moved.change = Change::kMovePaths;
     moved.arm = arm;
     propose(moved, &WorkcellTrials::plan_moved);
@@ -244,18 +245,18 @@ class WorkcellTrials {
            !leader.path().start_at;
   }
 
-  void propose(const WorkcellAdvice& advice, Trial trial) {
+  void propose(const Advice& advice, Trial trial) {
     const bool known =
-        std::any_of(advice_.cell.begin(), advice_.cell.end(), [&](const WorkcellAdvice& other) {
+        std::any_of(advice_.changes.begin(), advice_.changes.end(), [&](const Advice& other) {
           return other.change == advice.change && other.object == advice.object &&
                  other.also == advice.also && other.arm == advice.arm;
         });
     if (known) return;
-    advice_.cell.push_back(advice);
+    advice_.changes.push_back(advice);
     trials_.push_back(trial);
   }
   void propose_of_arm(const ArmTask& arm, Change change) {
-    WorkcellAdvice advice;
+    Advice advice;
     advice.change = change;
     advice.arm = arm.name;
     propose(advice, &WorkcellTrials::plan_changed);
@@ -264,15 +265,15 @@ class WorkcellTrials {
   /// Tries what was proposed, the expensive trials last, each for at most a third of the time that
   /// is left, so that no trial keeps others from being tried.
   void try_all() {
-    std::vector<std::size_t> order(advice_.cell.size());
+    std::vector<std::size_t> order(advice_.changes.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-      return dearness(advice_.cell[a].change) < dearness(advice_.cell[b].change);
+      return dearness(advice_.changes[a].change) < dearness(advice_.changes[b].change);
     });
     for (const std::size_t k : order) {
       const Clock::time_point now = Clock::now();
       trial_end_ = now + (end_ - now) / 3;
-      (this->*trials_[k])(advice_.cell[k]);
+      (this->*trials_[k])(advice_.changes[k]);
     }
   }
 
@@ -292,10 +293,10 @@ class WorkcellTrials {
     }
   }
 
-  void leave(WorkcellAdvice&) {}
+  void leave(Advice&) {}
 
   /// Plans the workcell with the change. The outcome is kUnknown if the time is up.
-  void plan_changed(WorkcellAdvice& advice) {
+  void plan_changed(Advice& advice) {
     advice.outcome = Outcome::kUnknown;
     advice.cost.reset();
     try {
@@ -319,28 +320,28 @@ class WorkcellTrials {
       advice.outcome = Outcome::kNoHelp;
     }
   }
-  void plan_relaxed(WorkcellAdvice& advice) {
+  void plan_relaxed(Advice& advice) {
     relax_to_strictest(advice, most_relaxed(advice.change, *advice.from),
-                       [this](WorkcellAdvice& one) { plan_changed(one); });
+                       [this](Advice& one) { plan_changed(one); });
   }
-  void plan_moved(WorkcellAdvice& advice) {
+  void plan_moved(Advice& advice) {
     const bool paths = advice.change == Change::kMovePaths;
     find_shortest_move(advice, paths ? kPathMoves : kObjectMoves,
                        directions_of_moves(cell_.scene, advice.object),
-                       [this](WorkcellAdvice& one) { plan_changed(one); });
+                       [this](Advice& one) { plan_changed(one); });
   }
 
   const Problem& cell_;
   PlanOptions options_;
   Clock::time_point end_, trial_end_;
   std::vector<std::size_t> without_path_;  // arms that have none by themselves
-  AdviceOnWorkcell advice_;
+  AdviceList advice_;
   std::vector<Trial> trials_;  // of each advice on the workcell
 };
 
 }  // namespace
 
-AdviceOnWorkcell advise_workcell(const Problem& cell, const Answer& result, PlanOptions options) {
+AdviceList advise_workcell(const Problem& cell, const Answer& result, PlanOptions options) {
   require_supported(options, "workcells");
   if (result.status != PlanStatus::kInfeasible) return {};
   return WorkcellTrials(cell, result, options).advise();

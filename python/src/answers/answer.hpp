@@ -103,11 +103,6 @@ struct Check {
   bool has_strokes = false;
 };
 
-/// Changes that would help a problem without an answer.
-struct AdviceList {
-  AnyAdvice advice;
-};
-
 /// Whether there is a figure, as to_string() says it.
 using MeasureStatusName = Typed<"Literal['measured', 'none', 'not_measured']">;
 

@@ -172,7 +172,7 @@ void bind_verdicts(py::module_& m) {
   bind_enum<Cause::Kind>(m, "CauseKind", "What removes nodes or edges of a lattice.",
                          names_from(Cause::Kind::kNone, Cause::Kind::kCheck));
   bind_enum<Advice::Change>(m, "Change", "What may be changed of a problem.",
-                            names_from(Advice::Change::kFreeStart, Advice::Change::kMovePaths));
+                            names_from(Advice::Change::kFreeStart, Advice::Change::kLines));
   bind_enum<Advice::Outcome>(m, "Outcome", "What planning the changed problem gave.",
                              names_from(Advice::Outcome::kSolved, Advice::Outcome::kUnknown));
 

@@ -106,15 +106,6 @@ void serialize(A& archive, ArmTask& x) {
   archive(static_cast<Robot&>(x), x.name, x.strokes, x.given, x.transition_limits, x.home, x.order,
           x.process_speed, x.approach_speed, x.rapid, x.lift);
 }
-/// Lists the members of a WorkcellAdvice and of its base.
-template <class A>
-void serialize(A& archive, WorkcellAdvice& x) {
-  struct Listed : Advice {
-    std::string arm;
-  };
-  static_assert(sizeof(Listed) == sizeof(WorkcellAdvice));
-  archive(static_cast<Advice&>(x), x.arm);
-}
 /// Lists the members of a LiftOffAnswer and of its base, which no structured binding takes apart
 /// together.
 template <class A>

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "swivel/collision/world/world.hpp"
+#include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/io/problems/problem.hpp"
 #include "swivel/planner/job/plan_job.hpp"
@@ -14,7 +15,7 @@
 namespace swivel {
 namespace {
 
-using Change = JobAdvice::Change;
+using Change = Advice::Change;
 
 /// The first strokes of the car door's job, on coarse lattices.
 Problem door_of(std::size_t strokes) {
@@ -38,17 +39,17 @@ struct Advised {
     options.timeout_s = 30;
     return options;
   }
-  [[nodiscard]] const JobAdvice* find(Change change) const {
-    for (const JobAdvice& one : advice.job)
+  [[nodiscard]] const Advice* find(Change change) const {
+    for (const Advice& one : advice.changes)
       if (one.change == change) return &one;
     return nullptr;
   }
   PreparedRobot robot;
   Answer result;
-  AdviceOnJob advice;
+  AdviceList advice;
 };
 
-void expect_solved(const JobAdvice* advice, const PreparedRobot& robot, const Problem& changed) {
+void expect_solved(const Advice* advice, const PreparedRobot& robot, const Problem& changed) {
   ASSERT_NE(advice, nullptr);
   ASSERT_EQ(advice->outcome, Advice::Outcome::kSolved) << words(*advice);
   const Answer found = plan_job(robot, changed);
@@ -62,16 +63,16 @@ TEST(AdviseJob, LeavesOutStrokesThatHaveNoPath) {
   const Advised advised(job);
   ASSERT_EQ(advised.result.status, PlanStatus::kInfeasible);
   EXPECT_FALSE(advised.result.arm().no_transition);
-  const JobAdvice* without = advised.find(Change::kWithoutStrokes);
+  const Advice* without = advised.find(Change::kWithoutStrokes);
   ASSERT_NE(without, nullptr);
   EXPECT_EQ(without->strokes, std::vector<std::string>{job.arm().strokes[1].name});
   Problem changed = job;
   changed.arm().strokes.erase(changed.arm().strokes.begin() + 1);
   expect_solved(without, advised.robot, changed);
   EXPECT_EQ(advised.find(Change::kReversed), nullptr);  // it has no path either way
-  ASSERT_EQ(advised.advice.strokes.size(), 1u);
-  EXPECT_EQ(advised.advice.strokes.front().stroke, job.arm().strokes[1].name);
-  EXPECT_FALSE(advised.advice.strokes.front().advice.empty());
+  ASSERT_EQ(advised.advice.alone.size(), 1u);
+  EXPECT_EQ(advised.advice.alone.front().name, job.arm().strokes[1].name);
+  EXPECT_FALSE(advised.advice.alone.front().advice.empty());
 }
 
 TEST(AdviseJob, MovesAHomeThatIsBarred) {
@@ -88,7 +89,7 @@ TEST(AdviseJob, MovesAHomeThatIsBarred) {
   EXPECT_EQ(advised.result.arm().no_transition->where, NoTransition::Where::kHome);
   EXPECT_EQ((*advised.result.arm().no_transition->bodies)[1], "ball")
       << (*advised.result.arm().no_transition->bodies)[0];
-  const JobAdvice* home = advised.find(Change::kHome);
+  const Advice* home = advised.find(Change::kHome);
   ASSERT_NE(home, nullptr);
   ASSERT_TRUE(home->home);
   Problem changed = job;
@@ -111,10 +112,10 @@ TEST(AdviseJob, LengthensLinesWhereEndsAreTooNear) {
   ASSERT_TRUE(advised.result.arm().no_transition->bodies);
   EXPECT_EQ((*advised.result.arm().no_transition->bodies)[1], "door");
   EXPECT_EQ(advised.result.arm().transitions.searches, 0);
-  const JobAdvice* lines = advised.find(Change::kLines);
+  const Advice* lines = advised.find(Change::kLines);
   ASSERT_NE(lines, nullptr);
   ASSERT_TRUE(lines->length);
-  EXPECT_EQ(&advised.advice.job.front(), lines);  // what helps comes first
+  EXPECT_EQ(&advised.advice.changes.front(), lines);  // what helps comes first
   Problem changed = job;
   for (Stroke& stroke : changed.arm().strokes)
     stroke.approach = stroke.retract = Vector3d(0, 0, -*lines->length);
@@ -127,8 +128,8 @@ TEST(AdviseJob, NothingWhereThereIsAJob) {
   const Problem job = door_of(1);
   const Advised advised(job);
   EXPECT_EQ(advised.result.status, PlanStatus::kSolved);
-  EXPECT_TRUE(advised.advice.job.empty());
-  EXPECT_TRUE(advised.advice.strokes.empty());
+  EXPECT_TRUE(advised.advice.changes.empty());
+  EXPECT_TRUE(advised.advice.alone.empty());
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "plain_arm.hpp"
 #include "robots.hpp"
 #include "seed.hpp"
+#include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/planner/study/advise.hpp"
@@ -123,7 +124,7 @@ void swap_leader(ArmTask& leads, ArmTask& follows) {
 
 /// Returns the workcell as somebody changes it who reads the advice. `stricter`: how far back a
 /// limit is, of the way from `to` to `from`.
-Problem as_advised(Problem cell, const WorkcellAdvice& advice, double stricter = 0) {
+Problem as_advised(Problem cell, const Advice& advice, double stricter = 0) {
   const double to = advice.to ? *advice.to + stricter * (advice.from.value_or(0) - *advice.to) : 0;
   for (std::size_t k = 0; k < 2; ++k) {
     ArmTask& arm = cell.arms[k];
@@ -202,7 +203,7 @@ bool is_limit(Change change) {
 }
 
 /// Expects what the advice says of its change. Returns true if it helps.
-bool holds(const Problem& cell, const WorkcellAdvice& advice) {
+bool holds(const Problem& cell, const Advice& advice) {
   SCOPED_TRACE(words(advice));
   EXPECT_NE(advice.outcome, Outcome::kUnknown);
   EXPECT_NE(advice.outcome, Outcome::kFurther);
@@ -222,14 +223,14 @@ bool holds(const Problem& cell, const WorkcellAdvice& advice) {
   return true;
 }
 
-void expect_equal(const AdviceOnWorkcell& one, const AdviceOnWorkcell& other) {
-  ASSERT_EQ(one.cell.size(), other.cell.size());
-  ASSERT_EQ(one.arms.size(), other.arms.size());
+void expect_equal(const AdviceList& one, const AdviceList& other) {
+  ASSERT_EQ(one.changes.size(), other.changes.size());
+  ASSERT_EQ(one.alone.size(), other.alone.size());
   EXPECT_EQ(advice_text(one), advice_text(other));
-  for (std::size_t k = 0; k < one.cell.size(); ++k) {
-    EXPECT_EQ(one.cell[k].cost, other.cell[k].cost);
-    EXPECT_EQ(one.cell[k].to, other.cell[k].to);
-    EXPECT_EQ(one.cell[k].offset, other.cell[k].offset);
+  for (std::size_t k = 0; k < one.changes.size(); ++k) {
+    EXPECT_EQ(one.changes[k].cost, other.changes[k].cost);
+    EXPECT_EQ(one.changes[k].to, other.changes[k].to);
+    EXPECT_EQ(one.changes[k].offset, other.changes[k].offset);
   }
 }
 
@@ -249,24 +250,24 @@ TEST(AdviseWorkcell, IsWhatPlanningTheChangedWorkcellGives) {
     } catch (const InputError&) {  // a path that makes no sense
       continue;
     }
-    const AdviceOnWorkcell advice = advise_workcell(cell, result, long_enough(2));
+    const AdviceList advice = advise_workcell(cell, result, long_enough(2));
     if (result.status == PlanStatus::kSolved) {
-      EXPECT_TRUE(advice.cell.empty() && advice.arms.empty());
+      EXPECT_TRUE(advice.changes.empty() && advice.alone.empty());
       continue;
     }
     ++infeasible;
-    ASSERT_FALSE(advice.cell.empty());
+    ASSERT_FALSE(advice.changes.empty());
     const auto lacking = static_cast<std::size_t>(
         std::count_if(result.arms.begin(), result.arms.end(),
                       [](const ArmAnswer& arm) { return !std::isfinite(arm.run().least_cost); }));
-    EXPECT_EQ(advice.arms.size(), lacking);
+    EXPECT_EQ(advice.alone.size(), lacking);
     conflicts += lacking == 0;
     one_arm += lacking == 1;
     bool any = false;
-    for (std::size_t k = 0; k < advice.cell.size(); ++k) {
-      const WorkcellAdvice& one = advice.cell[k];
+    for (std::size_t k = 0; k < advice.changes.size(); ++k) {
+      const Advice& one = advice.changes[k];
       if (k > 0) {
-        EXPECT_LE(advice.cell[k - 1].outcome, one.outcome);
+        EXPECT_LE(advice.changes[k - 1].outcome, one.outcome);
       }
       ++advised;
       if (!holds(cell, one)) continue;
@@ -319,7 +320,7 @@ TEST(AdviseWorkcell, LetsTheFollowerLead) {
   const Answer result = plan_workcell(cell, long_enough(2));
   ASSERT_EQ(result.status, PlanStatus::kInfeasible);
   int leads = 0;
-  for (const WorkcellAdvice& one : advise_workcell(cell, result, long_enough(2)).cell) {
+  for (const Advice& one : advise_workcell(cell, result, long_enough(2)).changes) {
     const bool helps = holds(cell, one);
     if (one.change != Change::kLeads) continue;
     EXPECT_TRUE(helps);
@@ -354,7 +355,7 @@ TEST(AdviseWorkcell, LeavesAGivenMotionAsItIs) {
     if (result.status == PlanStatus::kSolved) continue;
     ++infeasible;
     bool any = false;
-    for (const WorkcellAdvice& one : advise_workcell(cell, result, long_enough(2)).cell) {
+    for (const Advice& one : advise_workcell(cell, result, long_enough(2)).changes) {
       EXPECT_NE(one.arm, "left");
       EXPECT_NE(one.change, Change::kMovePaths);
       EXPECT_NE(one.change, Change::kFiner);
@@ -375,11 +376,11 @@ TEST(AdviseWorkcell, SaysNothingWithoutTimeAndWhereThereIsAPlan) {
   ASSERT_EQ(result.status, PlanStatus::kInfeasible);
   PlanOptions none = long_enough(1);
   none.timeout_s = 1e-6;
-  for (const WorkcellAdvice& one : advise_workcell(cell, result, none).cell)
+  for (const Advice& one : advise_workcell(cell, result, none).changes)
     EXPECT_EQ(one.outcome, Outcome::kUnknown) << words(one);
   Answer solved = result;
   solved.status = PlanStatus::kSolved;
-  EXPECT_TRUE(advise_workcell(cell, solved, none).cell.empty());
+  EXPECT_TRUE(advise_workcell(cell, solved, none).changes.empty());
   none.planner = PlannerKind::kEager;
   EXPECT_THROW(static_cast<void>(advise_workcell(cell, result, none)), InvalidArgument);
 }

@@ -139,7 +139,7 @@ std::string answer_text(const Answer& answer, const Problem& problem) {
   return run_text(arm.run(), arm.held, answer.has_rows() ? &arm.parts.front() : nullptr);
 }
 
-std::string whole_text(const Answer& answer, const Problem& problem, const AnyAdvice* advice) {
+std::string whole_text(const Answer& answer, const Problem& problem, const AdviceList* advice) {
   const std::string text =
       answer_text(answer, problem) + (advice != nullptr ? advice_text(*advice) : "");
   return is_path(problem) ? text : text + refined_text(answer) + timed_text(answer, problem);
@@ -149,29 +149,6 @@ std::string answer_text(const PlanResult& result) {
   if (result.status == PlanStatus::kSolved)
     return solved_text(result, result.trajectory, result.cost, result.held);
   return run_text(result, result.held);
-}
-
-std::string advice_text(const std::vector<Advice>& advice) {
-  std::string lines, unknown;
-  for (const Advice& one : advice) switch (one.outcome) {
-      case Advice::Outcome::kSolved:
-        lines += "  would help: " + words(one) + formatted(" (solved, cost %.6g)\n", *one.cost);
-        break;
-      case Advice::Outcome::kFurther:
-        lines +=
-            "  not enough: " + words(one) + formatted(" (paths to s = %.4f m)\n", *one.reached_s);
-        break;
-      case Advice::Outcome::kNoHelp:
-        lines += "  no help: " + words(one) + '\n';
-        break;
-      case Advice::Outcome::kUnknown:
-        unknown += (unknown.empty() ? "" : ", ") + words(one);
-    }
-  return lines + (unknown.empty() ? "" : "  not tried in the time: " + unknown + '\n');
-}
-
-std::string advice_text(const AnyAdvice& advice) {
-  return std::visit([](const auto& one) { return advice_text(one); }, advice);
 }
 
 std::string removed_text(const InfeasibilityCertificate& certificate) {

@@ -23,7 +23,7 @@ namespace swivel {
 /// Returns an answer in full for people: verdict, advice (null: none), refinement and motion, but
 /// of one path the verdict and the advice alone. `problem` is executed_problem() of the answer.
 [[nodiscard]] std::string whole_text(const Answer& answer, const Problem& problem,
-                                     const AnyAdvice* advice = nullptr);
+                                     const AdviceList* advice = nullptr);
 /// Returns what was found about a run, in the words of the answer of one path. `part`: its rows;
 /// null where there are none.
 [[nodiscard]] std::string run_text(const RunAnswer& run, const std::vector<HeldJoint>& held,
@@ -34,7 +34,7 @@ namespace swivel {
 [[nodiscard]] std::string advice_text(const std::vector<Advice>& advice);
 
 /// Returns the advice on a problem for the terminal, a line for each change.
-[[nodiscard]] std::string advice_text(const AnyAdvice& advice);
+[[nodiscard]] std::string advice_text(const AdviceList& advice);
 
 /// Returns what an infeasibility certificate of a size in bytes holds: its layers, and which causes
 /// remove how many nodes and edges.

@@ -15,7 +15,7 @@ namespace swivel::io {
 
 /// What followed a plan. A pointer is null if it was not asked for or does not exist.
 struct AnswerExtras {
-  const AnyAdvice* advice = nullptr;  ///< for a problem that has no answer
+  const AdviceList* advice = nullptr;  ///< for a problem that has no answer
   /// The certificate that there is no path, of a problem of one path.
   const InfeasibilityCertificate* certificate = nullptr;
   std::size_t certificate_bytes = 0;  ///< size of the certificate's file

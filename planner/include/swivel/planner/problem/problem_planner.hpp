@@ -49,7 +49,7 @@ class ProblemPlanner {
   [[nodiscard]] const ProblemView& view() const;
   /// Returns changes that would help, as advise(), advise_job() and advise_workcell() do. `answer`
   /// is that of the last plan.
-  [[nodiscard]] AnyAdvice advise(const Answer& answer, const PlanOptions& options) const;
+  [[nodiscard]] AdviceList advise(const Answer& answer, const PlanOptions& options) const;
   /// Returns a proof that the problem has no answer, from what the last plan found out, which must
   /// be that. Where there is none, adds the reason to the warnings of `answer`: of strokes only one
   /// that has no path by itself, and is not reversible, has a proof. Throws Stopped.

@@ -36,8 +36,8 @@ namespace swivel {
 /// `result` is the verdict on the job. Planner kind and threads are those of `options`, whose
 /// time-out covers all trials together (one second if unset). Changes that help come first. Empty
 /// unless the verdict is infeasible. Throws as plan_job() does.
-[[nodiscard]] AdviceOnJob advise_job(const PreparedRobot& robot, const Problem& job,
-                                     const Answer& result, PlanOptions options = {});
+[[nodiscard]] AdviceList advise_job(const PreparedRobot& robot, const Problem& job,
+                                    const Answer& result, PlanOptions options = {});
 
 /// Returns changes that would help a workcell that has no plan, each planned alone, with both arms.
 /// Where one arm has no path by itself: what advise() finds for it. Where both have one: a free
@@ -47,13 +47,13 @@ namespace swivel {
 /// scene removed or moved, the follower as leader, and both paths moved alike. Paths are not moved
 /// where a start, an end or a motion is given. Where both arms have no path by themselves, no
 /// change of a single arm is planned with both, but a smaller clearance and joint margin of both.
-/// For arms without a path AdviceOnWorkcell::arms says what helps them by themselves.
+/// For arms without a path AdviceList::alone says what helps them by themselves.
 ///
 /// `result` is the verdict on the workcell. Planner kind and threads are those of `options`, whose
 /// time-out covers all trials together (one second if unset). Changes that help come first. Empty
 /// unless the verdict is infeasible. Throws as plan_workcell() does. The number of threads changes
 /// the result only through the time.
-[[nodiscard]] AdviceOnWorkcell advise_workcell(const Problem& cell, const Answer& result,
-                                               PlanOptions options = {});
+[[nodiscard]] AdviceList advise_workcell(const Problem& cell, const Answer& result,
+                                         PlanOptions options = {});
 
 }  // namespace swivel
