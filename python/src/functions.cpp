@@ -21,10 +21,6 @@ namespace swivel::python {
 
 namespace {
 
-bool has_strokes(const swivel::Problem& problem) {
-  return problem.arms.size() == 1 && !is_path(problem);
-}
-
 /// Returns the names of the joints of each arm.
 std::vector<io::JointNames> joint_names_of(const swivel::Problem& problem) {
   std::vector<io::JointNames> names;
@@ -221,22 +217,7 @@ Loaded load_stated(const std::filesystem::path& file, const std::vector<std::str
 }  // namespace
 
 void bind_functions(py::module_& m) {
-  m.def("_plan", [](const Problem& problem, OrName<PlannerKind> planner, int threads,
-                    std::optional<double> timeout, bool prove, bool evidence, py::object check,
-                    py::object check_motions, py::object cost, py::object progress, bool refine,
-                    std::optional<double> speed, std::optional<double> turn_speed,
-                    std::optional<double> rate, std::optional<double> chord) {
-    const PlanKeywords keywords{std::move(planner),
-                                threads,
-                                timeout,
-                                prove,
-                                evidence,
-                                std::move(check),
-                                std::move(check_motions),
-                                std::move(cost),
-                                std::move(progress)};
-    return plan(problem, keywords, refine, {speed, turn_speed, rate, chord});
-  });
+  m.def("_plan", with_plan_keywords<const Problem&>(&plan));
   m.def("_check", &check, py::arg("problem"), py::arg("rows").none(false), py::arg("speed"));
   m.def(
       "_time",

@@ -48,8 +48,31 @@ struct MotionKeywords {
   /// allowed, and where there is no speed.
   [[nodiscard]] TimingOptions timing(const swivel::Problem& problem) const;
   /// Returns the timing of a motion that plan() is asked for; none where it is not. Throws
-  /// ValueError as above, and for what is of motions where a speed must be given and is not.
+  /// ValueError as above, and for a keyword of motions where a speed must be given and is not.
   [[nodiscard]] std::optional<TimingOptions> asked_timing(const swivel::Problem& problem) const;
 };
+
+/// Returns the function that Python calls with the keywords of plan(), in their order: it calls
+/// plan(self, PlanKeywords, refine, MotionKeywords).
+template <class Self, class Plan>
+auto with_plan_keywords(const Plan& plan) {
+  return
+      [plan](Self self, OrName<PlannerKind> planner, int threads, std::optional<double> timeout,
+             bool prove, bool evidence, Typed<"_Check"> check, Typed<"_MotionCheck"> check_motions,
+             Typed<"_Check"> cost, ProgressCallback progress, bool refine,
+             std::optional<double> speed, std::optional<double> turn_speed,
+             std::optional<double> rate, std::optional<double> chord) {
+        const PlanKeywords keywords{std::move(planner),
+                                    threads,
+                                    timeout,
+                                    prove,
+                                    evidence,
+                                    std::move(check),
+                                    std::move(check_motions),
+                                    std::move(cost),
+                                    std::move(progress)};
+        return plan(self, keywords, refine, MotionKeywords{speed, turn_speed, rate, chord});
+      };
+}
 
 }  // namespace swivel::python

@@ -277,22 +277,9 @@ void bind_planner(py::module_& m) {
           py::arg("name"))
       .def(
           "plan",
-          [](SharedPlanner& self, OrName<PlannerKind> planner, int threads,
-             std::optional<double> timeout, bool prove, bool evidence, Typed<"_Check"> check,
-             Typed<"_MotionCheck"> check_motions, Typed<"_Check"> cost, ProgressCallback progress,
-             bool refine, std::optional<double> speed, std::optional<double> turn_speed,
-             std::optional<double> rate, std::optional<double> chord) {
-            const PlanKeywords keywords{std::move(planner),
-                                        threads,
-                                        timeout,
-                                        prove,
-                                        evidence,
-                                        std::move(check),
-                                        std::move(check_motions),
-                                        std::move(cost),
-                                        std::move(progress)};
-            return self.plan(keywords, refine, {speed, turn_speed, rate, chord});
-          },
+          with_plan_keywords<SharedPlanner&>(
+              [](SharedPlanner& self, const PlanKeywords& keywords, bool refine,
+                 const MotionKeywords& motion) { return self.plan(keywords, refine, motion); }),
           py::kw_only(), py::arg("planner") = "parallel", py::arg("threads") = 0,
           py::arg("timeout") = py::none(), py::arg("prove") = true, py::arg("evidence") = false,
           py::arg("check") = py::none(), py::arg("check_motions") = py::none(),

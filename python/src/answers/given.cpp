@@ -13,10 +13,6 @@ namespace swivel::python {
 
 namespace {
 
-bool has_strokes(const swivel::Problem& problem) {
-  return problem.arms.size() == 1 && !is_path(problem);
-}
-
 [[noreturn]] void refuse(const swivel::Problem& problem, const std::string& what) {
   throw InvalidArgument("rows: are " + what + ": allowed are " +
                         (problem.arms.size() == 2 ? "those of two arms"
@@ -174,6 +170,10 @@ GivenAnswer by_name(const swivel::Problem& problem, const py::dict& rows) {
 }
 
 }  // namespace
+
+bool has_strokes(const swivel::Problem& problem) {
+  return problem.arms.size() == 1 && !is_path(problem);
+}
 
 GivenAnswer given_answer(const swivel::Problem& problem, const GivenRows& rows) {
   if (const auto* const answer = std::get_if<Answer>(&rows)) return of_answer(problem, *answer);

@@ -16,6 +16,9 @@ using RowsByName = Typed<"Mapping[str, Trajectory] | Mapping[str, Motion]", py::
 using GivenRows =
     std::variant<Answer, Motion, Trajectory, RowsByName, std::filesystem::path, std::vector<Part>>;
 
+/// Returns whether a problem is of strokes: of one arm, and not of one path alone.
+[[nodiscard]] bool has_strokes(const swivel::Problem& problem);
+
 /// Returns rows that are no file for check_answer() and time_answer(): strokes by their names, with
 /// the lift-offs that the names tell. Throws InvalidArgument for rows of another kind of problem
 /// and for strokes that the problem does not have, KeyError for an arm that is missing, and
