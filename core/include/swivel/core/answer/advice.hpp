@@ -34,7 +34,7 @@ struct Advice {
     kTurnedOver,     ///< the tool turned over: its frame by 180 deg about its x axis
     kLeads,          ///< of two arms: the arm leads, and its leader so far follows
     kMovePaths,      ///< of two arms: the path of one moved, or those of both alike
-    // Of strokes:
+    // The changes below are of problems with strokes.
     kWithoutStrokes,  ///< some left out
     kReversed,        ///< one run from its last waypoint to its first
     kBestOrder,       ///< order: best
@@ -67,14 +67,14 @@ struct Advice {
   /// move; empty: none is.
   std::string also = {};
   Vector3d also_offset{0, 0, 0};
-  /// Of two arms: name of the one that is changed, for kLeads of the one that leads; empty: both
-  /// are, or the scene is.
+  /// Name of the arm that is changed where there are two; for kLeads, of the one that leads. Empty:
+  /// both arms are changed, or the scene is.
   std::string arm = {};
   /// Names of the strokes that are changed; for kHome, kBestOrder and kLines none.
   std::vector<std::string> strokes = {};
   std::optional<double> length = {};  ///< for kApproach, kRetract and kLines, m
   std::optional<Config> home = {};    ///< for kHome, rad; none where no home was found to try
-  /// Of strokes and two arms never kFurther.
+  /// What planning gave; kFurther is only given for one path.
   Outcome outcome = Outcome::kUnknown;
   std::optional<double> cost = {};  ///< for kSolved: cost of the answer
   /// If there is no path, of one path alone: how far one comes, m along it.
