@@ -144,7 +144,7 @@ void run(const Options& options, const std::string& file) {
     for (const auto& [part, ms] : best.ms) parts[part].push_back(ms);
     nodes += static_cast<double>(result.lattice.nodes) / static_cast<double>(result.lattice.layers);
     for (const TrajectoryRow& row : result.trajectory)
-      for (const double value : row.q) {
+      for (const double value : row.q.coordinates()) {
         std::array<unsigned char, sizeof value> bytes;
         std::memcpy(bytes.data(), &value, sizeof value);
         for (const unsigned char byte : bytes) hash = (hash ^ byte) * 1099511628211u;

@@ -82,7 +82,7 @@ BasinLattice::Point BasinLattice::solved_point(int layer, int point) const {
 void BasinLattice::price(std::size_t stride, int layer) {
   const int over = kStrides[stride];
   costs_[stride][at(layer)].assign(at(kCells) * at(2 * width(stride) + 1), kNever);
-  const Config scale = Config::Map(lattice_->cost_scale().data());
+  const Config scale = Config::of(lattice_->cost_scale().data());
   for_edges(stride, layer, [&](const Edge& e) {
     double sum = 0;
     for (int j = 0; j < over; ++j) {
@@ -93,8 +93,8 @@ void BasinLattice::price(std::size_t stride, int layer) {
           std::abs(coordinate(from + 1, b) - coordinate(from, a)) > redundancy_->most_change())
         return;
       const Config move = scale.cwiseProduct(q.q - p.q);
-      sum +=
-          lattice_->cost().metric == CostMetric::kL2 ? move.norm() : move.lpNorm<Eigen::Infinity>();
+      sum += lattice_->cost().metric == CostMetric::kL2 ? joint_norm(move)
+                                                        : move.lpNorm<Eigen::Infinity>();
     }
     cost(e) = static_cast<float>(sum);
   });

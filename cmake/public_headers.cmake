@@ -3,6 +3,7 @@
 # includes no other but these; tests/install holds that.
 set(SWIVEL_PUBLIC_HEADERS
   swivel/core/base/budget.hpp
+  swivel/core/base/config.hpp
   swivel/core/base/timeline.hpp
   swivel/core/base/types.hpp
   swivel/core/base/zeroed_array.hpp

@@ -11,5 +11,5 @@ int main(int argc, char** argv) {
   if (result.status != swivel::PlanStatus::kSolved)
     return std::cerr << to_string(result.status) << '\n', 1;
   for (const swivel::TrajectoryRow& row : result.trajectory)
-    std::cout << row.s << ": " << row.q.transpose() << '\n';
+    std::cout << row.s << ": " << row.q.coordinates().transpose() << '\n';
 }

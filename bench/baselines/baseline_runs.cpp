@@ -47,7 +47,7 @@ void write_rows(const std::filesystem::path& file, const PreparedRobot& robot,
   for (const auto& [s, q] : rows) {
     text << '\n' << s << ',';
     if (const auto clearance = query.clearance(q)) text << clearance->distance;
-    for (const double joint : q) text << ',' << joint;
+    for (const double joint : q.coordinates()) text << ',' << joint;
   }
   io::write_file(file, text.str() + "\n");
 }

@@ -85,7 +85,7 @@ class Tracker {
       if (error.norm() <= options_.tool_error) return q;
       const Svd svd(chain_.jacobian(q), Eigen::ComputeFullU | Eigen::ComputeFullV);
       if (svd.singularValues()[5] < kSingular) return std::nullopt;
-      q += svd.solve(error);
+      q += Config(svd.solve(error));
     }
     return std::nullopt;
   }

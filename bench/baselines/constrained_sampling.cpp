@@ -97,7 +97,7 @@ class Forwards : public ob::ConstrainedMotionValidator {
 
 Eigen::VectorXd coordinates(const Config& q, double place) {
   Eigen::VectorXd x(kDof + 1);
-  x << q, place;
+  x << q.coordinates(), place;
   return x;
 }
 

@@ -42,7 +42,7 @@ class Kinematics {
     const py::array_t<double> states = to_joints(joints, "joints");
     py::array_t<double> values(states.shape(0));
     for (py::ssize_t k = 0; k < states.shape(0); ++k) {
-      const Config q = Eigen::Map<const Config>(states.data(k, 0));
+      const Config q = Config::of(states.data(k, 0));
       values.mutable_at(k) =
           arm_.kind.srs ? arm_angle(*arm_.kind.srs, first_plane(*arm_.kind.srs, chain().tool(q)), q)
                         : q[joint_];
@@ -280,7 +280,7 @@ std::vector<Config> to_states(py::handle joints) {
   const py::array_t<double> array = to_joints(joints, "joints");
   std::vector<Config> states(static_cast<std::size_t>(array.shape(0)));
   for (std::size_t k = 0; k < states.size(); ++k) {
-    states[k] = Eigen::Map<const Config>(array.data(static_cast<py::ssize_t>(k), 0));
+    states[k] = Config::of(array.data(static_cast<py::ssize_t>(k), 0));
     if (!states[k].allFinite())
       throw py::value_error("joints: row " + std::to_string(k) +
                             " is not finite: allowed are numbers, rad");

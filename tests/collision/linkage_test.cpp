@@ -35,7 +35,7 @@ Linked linked_arm(test::Random& random) {
 
 Config random_config(double range, test::Random& random) {
   Config q;
-  for (double& x : q) x = random.uniform(-range, range);
+  for (double& x : q.coordinates()) x = random.uniform(-range, range);
   return q;
 }
 
@@ -51,7 +51,7 @@ TEST(LinkageWorld, BodiesStandWherePlainKinematicsHasThem) {
       const Config q = random_config(2.5, random);
       const std::vector<double> positions = [&] {
         std::vector<double> all(robot.joints.size(), 0.0);
-        std::copy(q.begin(), q.end(), all.begin());
+        std::copy_n(q.data(), kDof, all.begin());
         return all;
       }();
       // A ball beside the ball at the end of a capsule of each linkage, along the capsule's axis:

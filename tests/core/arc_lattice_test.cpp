@@ -111,7 +111,7 @@ double relaxed(const ArcLattice& lattice, const SelfMotion& motion, const Found&
       for (std::size_t i = 0; i < rows.size(); ++i) {
         const auto J = lattice.chain().jacobian(rows[i]);
         const Eigen::HouseholderQR<Eigen::Matrix<double, kDof, 6>> qr(J.transpose());
-        const Config null = qr.householderQ() * Config::Unit(kDof - 1);
+        const Config null = qr.householderQ() * Eigen::Matrix<double, kDof, 1>::Unit(kDof - 1);
         const double before = around(i, rows[i]);
         for (const double sign : {1.0, -1.0}) {
           auto q = motion.image(rows[i] + sign * step * null,
@@ -190,9 +190,9 @@ void check_flipped_arcs(const ArcLattice& lattice, const SelfMotion& motion, int
   for (int slot = 0, half = lattice.slots(i) / 2;
        motion.has_flipped_arcs() && slot < lattice.slots(i); ++slot) {
     const int other = slot < half ? slot + half : slot - half;
-    EXPECT_LT(
-        lattice.delta(motion.flipped(lattice.point(i, slot).q), lattice.point(i, other).q).norm(),
-        1e-9);
+    EXPECT_LT(joint_norm(lattice.delta(motion.flipped(lattice.point(i, slot).q),
+                                       lattice.point(i, other).q)),
+              1e-9);
     const int before = lattice.point(i, slot).along[0];
     if (before < 0) continue;
     const int half_before = lattice.slots(i - 1) / 2;
@@ -210,7 +210,7 @@ void check_ends_of_arcs(const ArcLattice& lattice, const SelfMotion& motion, int
     for (const Config& end : {arc.q.front(), arc.q.back()}) {
       double nearest = 1e9;
       for (int slot = 0; slot < lattice.slots(i); ++slot)
-        nearest = std::min(nearest, (lattice.point(i, slot).q - end).norm());
+        nearest = std::min(nearest, joint_norm(lattice.point(i, slot).q - end));
       EXPECT_LE(nearest, 1e-9);
     }
   }

@@ -62,7 +62,7 @@ std::optional<Drifting> drifting(const Chain& chain, Random& random) {
   const SelfMotion motion(chain, d.kind.lock, 0);
   Config way = Config::Zero();
   for (int i = 0; i < d.path->size(); ++i) {
-    for (double& joint : way) joint += random.uniform(-0.01, 0.01);
+    for (double& joint : way.coordinates()) joint += random.uniform(-0.01, 0.01);
     const auto image =
         motion.image(q + (i == 0 ? Config(Config::Zero()) : way), d.path->layer(i).tool);
     if (!image || (*image - q).lpNorm<Eigen::Infinity>() > 0.3) return std::nullopt;
@@ -98,7 +98,7 @@ TEST(ArcMotion, KeepsTheRatesOfTheJointsAndTheToolOnItsPath) {
       ASSERT_TRUE(q) << trial;
       const Config& row = d->rows[static_cast<std::size_t>(i)].q;
       if (!within_limits(d->chain, row)) continue;  // is moved inside
-      off_rows = std::max(off_rows, (*q - row).norm());
+      off_rows = std::max(off_rows, joint_norm(*q - row));
     }
     for (int k = 0; k < 100; ++k) {
       const double x = random.uniform(0, motion->length());
@@ -194,23 +194,23 @@ TEST(ArcLengths, AreThoseOfAWalkInSmallSteps) {
     const SelfMotion motion(d->chain, d->kind.lock, 0);
     const auto at = [&](double x) { return lengths.joints(layer, x); };
     ASSERT_TRUE(at(0)) << trial;
-    EXPECT_LE((*at(0) - origins[static_cast<std::size_t>(layer)]).norm(), 1e-8) << trial;
+    EXPECT_LE(joint_norm(*at(0) - origins[static_cast<std::size_t>(layer)]), 1e-8) << trial;
     for (const double sign : {-1.0, 1.0}) {
       const auto ahead = at(sign * 0.01);
       if (!ahead) continue;
       constexpr double kStep = 2e-3;
-      Config q = *at(0), way = (*ahead - q).normalized();
+      Config q = *at(0), way = (*ahead - q) / joint_norm(*ahead - q);
       for (int k = 1; k <= 400; ++k) {
         const auto next = motion.image(q + kStep * way, tool);
         if (!next) break;
-        way = (*next - q).normalized();
+        way = (*next - q) / joint_norm(*next - q);
         q = *next;
         if (k % 50 != 0) continue;
         const auto there = at(sign * k * kStep);
         if (!there) break;
         ++compared;
         EXPECT_LE((d->chain.tool(*there).matrix() - tool.matrix()).norm(), 1e-9) << trial;
-        worst = std::max(worst, (*there - q).norm());
+        worst = std::max(worst, joint_norm(*there - q));
       }
     }
     // Between two layers: no place on the curve is nearer to the joints half-way.
@@ -226,7 +226,7 @@ TEST(ArcLengths, AreThoseOfAWalkInSmallSteps) {
     ++nearest;
     for (const double other : {z - 0.01, z + 0.01})
       if (const auto q = at(other)) {
-        EXPECT_LE((*at(z) - middle).norm(), (*q - middle).norm() + 1e-4) << trial;
+        EXPECT_LE(joint_norm(*at(z) - middle), joint_norm(*q - middle) + 1e-4) << trial;
       }
   }
   std::printf("%d places compared, at most %.2g rad apart; %d between layers\n", compared, worst,

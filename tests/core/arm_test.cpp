@@ -17,6 +17,37 @@ namespace {
 
 using namespace test;
 
+/// Sums over a Config have the bits of sums over seven numbers, and what is computed of
+/// configurations stays zero behind the arm's coordinates.
+TEST(Config, AddsUpAsSevenNumbersAndStaysZeroBehind) {
+  using Seven = Eigen::Matrix<double, kDof, 1>;
+  Random random(seed("Config.AddsUpAsSevenNumbersAndStaysZeroBehind"));
+  const auto draw = [&] {
+    Seven values;
+    for (double& value : values) value = random.uniform(-1, 1) * std::pow(10, random.below(9) - 4);
+    return values;
+  };
+  const auto is_arm = [](const Config& q) { return q.tail<kMaxDof - kDof>().isZero(0); };
+  const int count = trials(2000);
+  for (int trial = 0; trial < count; ++trial) {
+    const Seven a = draw(), b = draw(), scale = draw().cwiseAbs();
+    const Config p = a, q = Config::of(b.data()), w = scale;
+    ASSERT_EQ(joint_sum(p), a.sum());
+    ASSERT_EQ(joint_norm(p), a.norm());
+    ASSERT_EQ(joint_dot(p, q), a.dot(b));
+    ASSERT_EQ(joint_norm(w.cwiseProduct(p - q)), scale.cwiseProduct(a - b).norm());
+    ASSERT_EQ(joint_squared_norm(2 * p + q / 3), (2 * a + b / 3).squaredNorm());
+    ASSERT_EQ(p.coordinates(), a);
+    Config r = p + Config::Constant(0.5) - random.uniform(-3, 3) * q;
+    ASSERT_TRUE(is_arm(r));
+    r = a.head<3>();
+    ASSERT_TRUE(r.head<3>() == a.head<3>() && r.tail<kMaxDof - 3>().isZero(0));
+  }
+  std::printf("%d pairs of configurations\n", count);
+  EXPECT_TRUE(is_arm(Config()) && is_arm(Config::Ones()));
+  EXPECT_EQ((Config{1, 2, 3}), (Config{1, 2, 3, 0, 0, 0, 0}));
+}
+
 TEST(Arm, Sda5fHasTheDimensionsOfItsDataSheet) {
   const TestRobot robot = data_robot("sda5f");
   const Chain chain = arm_of(robot).chain;
@@ -63,7 +94,7 @@ TEST(Arm, TheHandMayBeTheBase) {
     for (int trial = 0; trial < trials(100); ++trial) {
       const Config q = random_config(from_base.chain, random);
       const auto G = from_base.chain.displacements(q),
-                 H = from_hand.chain.displacements(q.reverse());
+                 H = from_hand.chain.displacements(q.coordinates().reverse());
       const auto pose = [&](const ArmModel& arm, const auto& moved, std::size_t link) {
         return moved[static_cast<std::size_t>(arm.links[link].group)] * arm.links[link].pose;
       };
@@ -114,7 +145,7 @@ TEST(Arm, DisplacementsAreTurnsAboutTheAxes) {
         worst = std::max(worst, (G[k + 1].matrix() - expected.matrix()).lpNorm<Eigen::Infinity>());
         ++compared;
       }
-      const Vector3d point = chain.tool_point(q.array().cos(), q.array().sin());
+      const Vector3d point = chain.tool_point(q.array().cos().matrix(), q.array().sin().matrix());
       worst = std::max(
           {worst, (point - expected * chain.home.translation()).norm(),
            (chain.tool(q).matrix() - (expected * chain.home).matrix()).lpNorm<Eigen::Infinity>()});

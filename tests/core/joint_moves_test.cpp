@@ -29,7 +29,8 @@ std::array<double, 3> greatest_shares(const std::vector<TimedRow>& rows, const J
                           : order == 1 ? rates.acceleration
                                        : rates.jerk;
     for (const Config& value : values)
-      most[order] = std::max(most[order], value.cwiseAbs().cwiseQuotient(limit).maxCoeff());
+      most[order] =
+          std::max(most[order], value.cwiseAbs().cwiseQuotient(limit).head<kDof>().maxCoeff());
   }
   return most;
 }

@@ -214,7 +214,7 @@ class Waves final : public LayerSolver {
     for (int i = 0; i < layers; ++i) {
       travel_.push_back(i == 0 ? 0 : travel_.back() + random.uniform(0.5, 1.5));
       Config phase;
-      for (double& value : phase) value = random.uniform(0, 0.3);
+      for (double& value : phase.coordinates()) value = random.uniform(0, 0.3);
       phase_.push_back(phase);
     }
   }
@@ -487,7 +487,7 @@ TEST(TimePath, StartsAsBrisklyOnCoarseLayers) {
   const Chain chain = arm_of(data_robot("iiwa14")).chain;
   const ArmClass kind = classify(chain, "iiwa14");
   const SrsArm& arm = *kind.srs;
-  const Config q = (Config() << 0.2, 0.6, -0.3, -1.2, 0.4, 0.9, 0.1).finished();
+  const Config q = {0.2, 0.6, -0.3, -1.2, 0.4, 0.9, 0.1};
   const Waypoint first = waypoint_of(chain.tool(q));
   Limits limits;
   limits.joint_acceleration.emplace().fill(10);

@@ -273,7 +273,7 @@ TEST(Roll, ToolAngleErrorIsThatOfTheAxis) {
   Random random(seed("Roll.ToolAngleErrorIsThatOfTheAxis"));
   const Chain chain = arm_with_roll(arms_6r()[0], Roll{}).chain;
   Config q = Config::Zero();
-  q << 0.2, -0.8, 1.1, 0.3, 0.7, -0.4, 0.1;
+  q = {0.2, -0.8, 1.1, 0.3, 0.7, -0.4, 0.1};
   const Pose tool = chain.tool(q);
   PathProblem problem;
   problem.source = "two poses";

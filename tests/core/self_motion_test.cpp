@@ -36,7 +36,7 @@ bool solve(const Chain& chain, const Pose& tool, Config& q) {
     const Eigen::Matrix<double, 6, 6> A =
         J * J.transpose() + 1e-4 * error.squaredNorm() * Eigen::Matrix<double, 6, 6>::Identity();
     const Config move = J.transpose() * A.ldlt().solve(error);
-    q += move * std::min(1.0, 0.5 / std::max(move.norm(), 1e-12));
+    q += move * std::min(1.0, 0.5 / std::max(joint_norm(move), 1e-12));
   }
   return false;
 }
@@ -50,8 +50,8 @@ double distance_to(const SelfMotionArc& arc, const Config& q) {
       d[j] = turn(q[j] - from[j]);
       c[j] = turn(to[j] - from[j]);
     }
-    least = std::min(
-        least, (d - std::clamp(d.dot(c) / std::max(c.squaredNorm(), 1e-30), 0.0, 1.0) * c).norm());
+    const double along = joint_dot(d, c) / std::max(joint_squared_norm(c), 1e-30);
+    least = std::min(least, joint_norm(d - std::clamp(along, 0.0, 1.0) * c));
   };
   for (int chord = 0; chord < arc.chords(); ++chord) {
     Config d;
@@ -96,7 +96,7 @@ void compare(const Chain& chain, const Pose& tool, const std::vector<SelfMotionA
       Config copy = arc.q[k];
       EXPECT_TRUE(inside(chain, copy));
       EXPECT_EQ(copy, arc.q[k]) << "not in the winding of its limits";
-      EXPECT_LT((chain.jacobian(copy) * arc.tangent[k]).norm(), 1e-4);
+      EXPECT_LT((chain.jacobian(copy) * arc.tangent[k].head<kDof>()).norm(), 1e-4);
     }
     for (const std::size_t end : {std::size_t{0}, std::size_t{1}}) {
       if (arc.limit[end] < 0) continue;
@@ -312,7 +312,7 @@ TEST(PostureBeside, IsTheNearestThatIsAllowedToBothSides) {
       ++found;
       EXPECT_LT(pose_distance(chain.tool(*beside), chain.tool(q)), 1e-9) << where;
       EXPECT_GE(moved(*beside), by) << where;
-      EXPECT_LT((*beside - q).norm(), 1.1 * kFarthest * 1.3) << where;
+      EXPECT_LT(joint_norm(*beside - q), 1.1 * kFarthest * 1.3) << where;
       // Steps grow by three tenths: two thirds of the way, on the curve beside the chord, nothing
       // is allowed.
       const Config way = *beside - q;
@@ -320,7 +320,7 @@ TEST(PostureBeside, IsTheNearestThatIsAllowedToBothSides) {
       for (const double part : {0.2, 0.4, 0.65}) {
         Config between = q + part * way;
         if (!solve(chain, chain.tool(q), between) ||
-            (between - q - part * way).norm() > 0.02 * way.norm())
+            joint_norm(between - q - part * way) > 0.02 * joint_norm(way))
           continue;
         ++tried;
         EXPECT_LT(moved(between), by) << where << ", " << part;

@@ -53,7 +53,7 @@ TEST(Slide, ToolAndJacobianAreThoseOfThePlainChain) {
       const Pose tool = chain.tool(q);
       worst = std::max(
           worst, (tool.matrix() - plain_tip(robot, chain, q).matrix()).lpNorm<Eigen::Infinity>());
-      Config cosine = q.array().cos(), sine = q.array().sin();
+      Config cosine = q.array().cos().matrix(), sine = q.array().sin().matrix();
       cosine[chain.slide()] = 0;
       sine[chain.slide()] = q[chain.slide()];
       worst = std::max(worst, (chain.tool_point(cosine, sine) - tool.translation()).norm());
@@ -142,7 +142,7 @@ TEST(Slide, NewtonStandsOnThePoseWithTheSameBitsOnEveryVectorUnit) {
       std::vector<Config> starts(static_cast<std::size_t>(1 + random.below(20)), reached);
       std::vector<double> values;
       for (Config& start : starts) {
-        for (double& x : start) x += random.uniform(-0.1, 0.1);
+        for (double& x : start.coordinates()) x += random.uniform(-0.1, 0.1);
         values.push_back(start[task.joint]);
       }
       for (double& scale2 : task.scale2) scale2 = 1;
@@ -234,8 +234,8 @@ double distance_to(const std::vector<SelfMotionArc>& arcs, const Config& q, int 
       for (int part = 0; part < 4; ++part) {
         const Config from = arc.at(chord, part / 4.0), d = way(q, from),
                      c = way(arc.at(chord, (part + 1) / 4.0), from);
-        const double along = d.dot(c) / std::max(c.squaredNorm(), 1e-30);
-        least = std::min(least, (d - std::clamp(along, 0.0, 1.0) * c).norm());
+        const double along = joint_dot(d, c) / std::max(joint_squared_norm(c), 1e-30);
+        least = std::min(least, joint_norm(d - std::clamp(along, 0.0, 1.0) * c));
       }
     }
   return least;

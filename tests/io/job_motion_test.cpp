@@ -42,7 +42,7 @@ ArmMotion random_motion(Random& random, const Problem& job, bool lines, bool rol
       TimedRow row;
       row.t = static_cast<double>(motion.rows.size()) / motion.rate;
       for (Config* values : {&row.row.q, &row.v, &row.a})
-        for (double& value : *values)
+        for (double& value : values->coordinates())
           value = random.uniform(-4, 4) * std::pow(10, random.below(20) - 15);
       const bool begins = k + 1 == count && part + 1 < parts && of_run(part + 1);
       if (of_run(part) || begins) {

@@ -118,7 +118,7 @@ TEST(JobTrajectory, EveryBitIsReadAgain) {
     for (Part& part : plan.arm().parts)
       for (TrajectoryRow& row : part.rows) {
         ++rows;
-        for (double& angle : row.q)
+        for (double& angle : row.q.coordinates())
           angle = random.uniform(-4, 4) * std::pow(10, random.below(20) - 15);
         if (!part.run) continue;
         row.phi = random.uniform(-4, 4);
@@ -159,7 +159,7 @@ TEST(JobTrajectory, ColumnsAreReadByName) {
   EXPECT_EQ(read.parts[0].run, std::nullopt);
   EXPECT_EQ(read.parts[1].run, (StrokeRun{0, false}));
   EXPECT_EQ(read.parts[1].rows[1].s, 0.5);
-  EXPECT_EQ(read.parts[1].rows[1].q, (Config() << 1, 2, 3, 4, 5, 6, 7).finished());
+  EXPECT_EQ(read.parts[1].rows[1].q, (Config{1, 2, 3, 4, 5, 6, 7}));
   EXPECT_TRUE(read.stated.s && read.stated.last_joint);
   EXPECT_FALSE(read.stated.phi || read.stated.branch || read.stated.roll);
 }

@@ -43,7 +43,7 @@ PlanResult solved() {
   row.s = 0.1;
   row.phi = kPi;
   row.branch = 5;
-  row.q << 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 1e-17;
+  row.q = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 1e-17};
   result.trajectory = {row, row};
   result.warnings = {"open mesh"};
   result.joint_names = {"a", "b", "c", "d", "e", "f", "g"};

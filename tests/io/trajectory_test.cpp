@@ -23,10 +23,10 @@ PlanResult random_result(int rows) {
     row.s = uniform(random) * 1e-9;
     row.phi = uniform(random);
     row.branch = k % 8;
-    for (double& angle : row.q) angle = uniform(random);
+    for (double& angle : row.q.coordinates()) angle = uniform(random);
     result.trajectory.push_back(row);
   }
-  result.trajectory[0].q << 0.1, -0.0, 1e-300, 5e-324, 1e300, kPi, 1.0 / 3;
+  result.trajectory[0].q = {0.1, -0.0, 1e-300, 5e-324, 1e300, kPi, 1.0 / 3};
   return result;
 }
 
@@ -135,7 +135,7 @@ TimedPath random_motion(swivel::test::Random& random, double rate, bool roll = f
     TimedRow row;
     row.t = k / rate;
     for (Config* values : {&row.row.q, &row.v, &row.a})
-      for (double& value : *values)
+      for (double& value : values->coordinates())
         value = random.uniform(-4, 4) * std::pow(10, random.below(20) - 15);
     motion.rows.push_back(row);
   }

@@ -105,7 +105,7 @@ std::map<std::string, std::string> texts() {
     io::write_trajectory(file, result);
     for (const TrajectoryRow& row :
          io::load_trajectory_file(file, planner.view().lattice.chain().joint_names).rows)
-      texts["trajectory"] += formatted("%.17g %.17g %.17g\n", row.s, row.phi, row.q.sum());
+      texts["trajectory"] += formatted("%.17g %.17g %.17g\n", row.s, row.phi, joint_sum(row.q));
     fs::remove(file);
   }
   return texts;

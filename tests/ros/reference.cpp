@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
     std::istringstream words(line);
     std::vector<double> numbers;
     for (std::string word; words >> word;) numbers.push_back(std::stod(word));
-    const swivel::Config start(numbers.data());
+    const swivel::Config start = swivel::Config::of(numbers.data());
     std::vector<swivel::Waypoint> waypoints;
     for (const double* n = numbers.data() + 7; n < numbers.data() + numbers.size(); n += 7)
       waypoints.push_back({{n[0], n[1], n[2]}, {n[3], n[4], n[5], n[6]}, {}});
@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
         swivel::compute_cartesian_path(planner, waypoints, start, options);
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
     const auto print = [](const swivel::Config& q) {
-      for (const double one : q) std::printf(" %a", one);
+      for (const double one : q.coordinates()) std::printf(" %a", one);
     };
     std::printf("%.4f %a %zu", took.count(), path.fraction,
                 path.motion ? path.motion->rows.size() : path.rows.size());

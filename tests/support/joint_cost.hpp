@@ -13,7 +13,7 @@ inline double cost_of_joints(const std::vector<TrajectoryRow>& rows, bool six) {
   for (std::size_t i = 1; i < rows.size(); ++i) {
     Config move = rows[i].q - rows[i - 1].q;
     if (six) move[kDof - 1] = 0;
-    sum += move.norm();
+    sum += joint_norm(move);
   }
   return sum;
 }

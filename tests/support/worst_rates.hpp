@@ -17,13 +17,16 @@ inline int keep_worst_rates(const std::vector<TimedRow>& rows, double dt, const 
   const auto q = [&](std::ptrdiff_t k) {
     return rows[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k, 0, n - 1))].row.q;
   };
+  const auto share = [](const Config& value, const Config& most) {
+    return (value.coordinates().cwiseAbs().array() / most.coordinates().array()).maxCoeff();
+  };
   int samples = 0;
   for (std::ptrdiff_t k = -3; k < n + 3; ++k) {
     const Config v = (q(k + 1) - q(k)) / dt, a = (q(k + 2) - 2 * q(k + 1) + q(k)) / (dt * dt),
                  j = (q(k + 3) - 3 * q(k + 2) + 3 * q(k + 1) - q(k)) / (dt * dt * dt);
-    worst[0] = std::max(worst[0], (v.cwiseAbs().array() / rates.speed.array()).maxCoeff());
-    worst[1] = std::max(worst[1], (a.cwiseAbs().array() / rates.acceleration.array()).maxCoeff());
-    worst[2] = std::max(worst[2], (j.cwiseAbs().array() / rates.jerk.array()).maxCoeff());
+    worst[0] = std::max(worst[0], share(v, rates.speed));
+    worst[1] = std::max(worst[1], share(a, rates.acceleration));
+    worst[2] = std::max(worst[2], share(j, rates.jerk));
     ++samples;
   }
   return samples;

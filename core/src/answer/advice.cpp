@@ -131,7 +131,7 @@ std::optional<std::string> words_of_strokes(const Advice& advice) {
     case Advice::Change::kHome: {
       if (!advice.home) return "another home";
       std::string text;
-      for (const double joint : *advice.home)
+      for (const double joint : advice.home->coordinates())
         text += (text.empty() ? "" : ", ") + formatted("%.4f", joint);
       return "home: {joints: [" + text + "]}";
     }

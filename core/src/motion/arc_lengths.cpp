@@ -25,7 +25,7 @@ ArcLengths::ArcLengths(const Chain& chain, const ToolPath& path, std::vector<Con
       for (auto& side : curve.side) side.push_back({origins[i], Config::Zero(), 0});
       continue;
     }
-    const Config tangent = at.null.normalized();
+    const Config tangent = at.null / joint_norm(at.null);
     curve.side[0].push_back({origins[i], tangent, 0});
     curve.side[1].push_back({origins[i], -tangent, 0});
   }
@@ -43,12 +43,12 @@ bool ArcLengths::follow(Curve& curve, std::size_t side, const Pose& tool) const 
   for (double step = kLongest; step >= kShortest; step /= 2) {
     const Config guess = last.q + step * last.tangent;
     const auto found = newton_->nearest(guess, tool, Config::Ones(), kNewtonSteps);
-    if (!found || (found->q - guess).norm() > kAside * step) continue;
-    const double turn = found->tangent.dot(last.tangent);
+    if (!found || joint_norm(found->q - guess) > kAside * step) continue;
+    const double turn = joint_dot(found->tangent, last.tangent);
     if (std::abs(turn) < kStraight) continue;
     // The length of the circle arc through both points with these tangents.
     const double half = std::acos(std::min(1.0, std::abs(turn))) / 2,
-                 chord = (found->q - last.q).norm();
+                 chord = joint_norm(found->q - last.q);
     const double length = half > 1e-6 ? chord * half / std::sin(half) : chord;
     curve.side[side].push_back(
         {found->q, turn < 0 ? Config(-found->tangent) : found->tangent, last.length + length});
@@ -81,7 +81,7 @@ std::optional<ArcLengths::Point> ArcLengths::point(int layer, double length) con
   // One step more: second derivatives are differences of these digits.
   const auto exact = newton_->nearest(near->q, tool, Config::Ones(), 1);
   const PoseNewton::Point& found = exact ? *exact : *near;
-  const bool turned = found.tangent.dot(a.tangent) < 0;
+  const bool turned = joint_dot(found.tangent, a.tangent) < 0;
   return Point{found.q, turned ? Config(-found.tangent) : found.tangent, length};
 }
 
@@ -104,9 +104,9 @@ double ArcLengths::between(int layer, int before, double x, int after, double y)
     const auto here = point(layer, length);
     if (!here) break;
     const Config off = goal->q - here->q;
-    const double move = std::clamp(off.dot(length < 0 ? Config(-here->tangent) : here->tangent),
-                                   -kLongest, kLongest);
-    if (std::abs(move) < kSettled) return off.norm() < kOnCurve ? length : 0;
+    const double move = std::clamp(
+        joint_dot(off, length < 0 ? Config(-here->tangent) : here->tangent), -kLongest, kLongest);
+    if (std::abs(move) < kSettled) return joint_norm(off) < kOnCurve ? length : 0;
     length += move;
   }
   return 0;

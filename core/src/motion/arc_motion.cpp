@@ -65,14 +65,14 @@ std::optional<Config> ArcMotion::joints(double travel) const {
 /// shorter than the whole, down to nothing, show a jump.
 bool ArcMotion::leads_over(double x0, const Config& q0, double x1, const Config& q1) const {
   constexpr double kSmall = 1e-3, kUneven = 0.75;  // rad, and of the whole
-  const double whole = (q1 - q0).norm();
+  const double whole = joint_norm(q1 - q0);
   if (whole < kSmall) return true;
   const double middle = (x0 + x1) / 2;
   if (!(x0 < middle && middle < x1)) return false;
   const auto q = joints(middle);
   if (!q) return false;
-  return ((*q - q0).norm() <= kUneven * whole || leads_over(x0, q0, middle, *q)) &&
-         ((q1 - *q).norm() <= kUneven * whole || leads_over(middle, *q, x1, q1));
+  return (joint_norm(*q - q0) <= kUneven * whole || leads_over(x0, q0, middle, *q)) &&
+         (joint_norm(q1 - *q) <= kUneven * whole || leads_over(middle, *q, x1, q1));
 }
 
 void ArcMotion::find_jumps() {

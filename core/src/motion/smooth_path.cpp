@@ -39,7 +39,7 @@ class Objective {
  public:
   Objective(const LayerSolver& solver, const SmoothObjective& objective)
       : solver_(&solver), objective_(&objective), n_(solver.layers()) {
-    scale_ = Config::Map(objective.weights.data());
+    scale_ = Config::of(objective.weights.data());
     bends_.resize(static_cast<std::size_t>(n_));
     for (int i = 1; i + 1 < n_; ++i) {
       const double h0 = solver.travel(i) - solver.travel(i - 1),
@@ -67,7 +67,7 @@ class Objective {
       if (over > 0) sum += kChange * over * over;
     }
     for (int i = 1; i + 1 < n_; ++i)
-      sum += objective_->bending * bends_[at(i)].h * bend(q, i).squaredNorm();
+      sum += objective_->bending * bends_[at(i)].h * joint_squared_norm(bend(q, i));
     for (std::size_t i = 0; i < objective_->roll.size(); ++i)
       sum += objective_->roll[i] * off(wrap_angle(roll(x[i], q[i])));
     return sum;
@@ -93,15 +93,15 @@ class Objective {
       const std::size_t a = at(i), b = at(i + 1);
       const Norm n = norm(scale_.cwiseProduct(l.q[b] - l.q[a]));
       const Config ja = scale_.cwiseProduct(l.first[a]), jb = scale_.cwiseProduct(l.first[b]);
-      const double wa = n.way.dot(ja), wb = n.way.dot(jb),
+      const double wa = joint_dot(n.way, ja), wb = joint_dot(n.way, jb),
                    bent = (objective_->power - 1) / n.length;
       g[a] -= wa;
       g[b] += wb;
-      H[0][a] += bent * (ja.cwiseProduct(n.spread).dot(ja) - wa * wa) -
-                 n.way.dot(scale_.cwiseProduct(l.second[a]));
-      H[0][b] += bent * (jb.cwiseProduct(n.spread).dot(jb) - wb * wb) +
-                 n.way.dot(scale_.cwiseProduct(l.second[b]));
-      H[1][a] -= bent * (ja.cwiseProduct(n.spread).dot(jb) - wa * wb);
+      H[0][a] += bent * (joint_dot(ja.cwiseProduct(n.spread), ja) - wa * wa) -
+                 joint_dot(n.way, scale_.cwiseProduct(l.second[a]));
+      H[0][b] += bent * (joint_dot(jb.cwiseProduct(n.spread), jb) - wb * wb) +
+                 joint_dot(n.way, scale_.cwiseProduct(l.second[b]));
+      H[1][a] -= bent * (joint_dot(ja.cwiseProduct(n.spread), jb) - wa * wb);
       const double change = x[b] - x[a], over = std::abs(change) - objective_->most_change;
       if (over <= 0) continue;
       const double pull = 2 * kChange * std::copysign(over, change);
@@ -125,11 +125,11 @@ class Objective {
       for (int j = 0; j < 3; ++j) {
         const std::size_t k = at(i - 1 + j);
         const double cj = b.c[static_cast<std::size_t>(j)];
-        g[k] += w * cj * e.dot(l.first[k]);
-        H[0][k] += w * cj * e.dot(l.second[k]);
+        g[k] += w * cj * joint_dot(e, l.first[k]);
+        H[0][k] += w * cj * joint_dot(e, l.second[k]);
         for (int m = j; m < 3; ++m)
-          H[static_cast<std::size_t>(m - j)][k] +=
-              w * cj * b.c[static_cast<std::size_t>(m)] * l.first[k].dot(l.first[at(i - 1 + m)]);
+          H[static_cast<std::size_t>(m - j)][k] += w * cj * b.c[static_cast<std::size_t>(m)] *
+                                                   joint_dot(l.first[k], l.first[at(i - 1 + m)]);
       }
     }
     return true;
@@ -142,9 +142,9 @@ class Objective {
   }
   [[nodiscard]] double length(const Config& r) const {
     const int power = objective_->power;
-    if (power == 2) return std::sqrt(r.squaredNorm() + kLeastMove * kLeastMove);
+    if (power == 2) return std::sqrt(joint_squared_norm(r) + kLeastMove * kLeastMove);
     const double unit = std::max(r.lpNorm<Eigen::Infinity>(), kLeastMove);
-    return unit * std::pow(raised(r / unit, power).sum() +
+    return unit * std::pow(joint_sum(raised(r / unit, power)) +
                                raised(Config::Constant(kLeastMove / unit), power)[0],
                            1.0 / power);
   }

@@ -573,7 +573,7 @@ void differentiate(const TimedArm& arm, std::size_t m, const std::vector<double>
   if (!arm.options->chord) return;
   // Half-way along a straight move over a travel of h the joints are off by q'' h^2 / 8. What is
   // along the path only shifts the time.
-  const double least = 1e-4 / std::max(1.0, place.second.norm());
+  const double least = 1e-4 / std::max(1.0, joint_norm(place.second));
   const auto moved = [&](double by) -> Vector3d {
     return arm.motion->chain().tool(place.q + by * place.second).translation();
   };

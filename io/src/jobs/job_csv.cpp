@@ -36,7 +36,7 @@ bool any_rolls(const ArmAnswer& arm) {
 
 std::string placeless_fields(const TrajectoryRow& row, bool roll) {
   std::string text = roll ? ",,," : ",,";
-  for (const double angle : row.q) text += ',' + format_double(angle);
+  for (const double angle : row.q.coordinates()) text += ',' + format_double(angle);
   return text;
 }
 

@@ -61,7 +61,7 @@ std::string to_job_motion_csv(const ArmMotion& motion, const Problem& job,
       place.s += s_of_piece(job.arm().strokes[stroke(k) ? *stroke(k) : *stroke(k + 1)]);
     text += placed(k) ? trajectory_fields(place, roll) : placeless_fields(place, roll);
     for (const Config* values : {&row.v, &row.a})
-      for (const double value : *values) text += ',' + format_double(value);
+      for (const double value : values->coordinates()) text += ',' + format_double(value);
     text += ',' + (stroke(k) ? csv_line_field(job.arm().strokes[*stroke(k)].name) : "");
     text += process[k] ? ",1\n" : ",0\n";
   }

@@ -31,7 +31,7 @@ std::string to_timed_csv(const TimedPath& motion, const JointNames& joint_names)
   for (const TimedRow& row : motion.rows) {
     text += format_double(row.t) + ',' + trajectory_fields(row.row, roll);
     for (const Config* values : {&row.v, &row.a})
-      for (const double value : *values) text += ',' + format_double(value);
+      for (const double value : values->coordinates()) text += ',' + format_double(value);
     text += '\n';
   }
   return text;

@@ -53,7 +53,7 @@ std::string trajectory_fields(const TrajectoryRow& row, bool roll) {
   std::string text = format_double(row.s) + ',' + format_double(row.phi) + ',';
   if (roll) text += format_double(row.roll) + ',';
   text += std::to_string(row.branch);
-  for (const double angle : row.q) text += ',' + format_double(angle);
+  for (const double angle : row.q.coordinates()) text += ',' + format_double(angle);
   return text;
 }
 

@@ -60,7 +60,7 @@ class JobValues {
   void add_motion_between(YAML::Node& root) const {
     if (!layout_.path) {
       if (job_.arm().home)
-        for (const double joint : *job_.arm().home)
+        for (const double joint : job_.arm().home->coordinates())
           root["home"]["joints"].push_back(csv_number(joint));
       root["order"] = job_.arm().order == StrokeOrder::kBest ? "best" : "given";
       root["rapid"] = scalar(job_.arm().rapid);

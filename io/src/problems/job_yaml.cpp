@@ -219,9 +219,8 @@ class JobReader : ProblemReader {
   /// Returns the configuration of `home`. Of an arm of six joints six numbers are enough: the roll
   /// of the tool means nothing there.
   [[nodiscard]] Config home_of(const YamlValue& joints) const {
-    return leaves_out_roll(joints, model_->chain)
-               ? without_roll(joints)
-               : Config(Config::Map(joint_numbers(joints).data()));
+    return leaves_out_roll(joints, model_->chain) ? without_roll(joints)
+                                                  : Config::of(joint_numbers(joints).data());
   }
 
   /// Reads the keys of the job that are of no single stroke.

@@ -644,7 +644,7 @@ void ProblemReader::require_used(const std::vector<UnusedKey>& unused) const {
 
 void ProblemReader::read_start(const YamlValue& value) {
   const YamlValue joints = value.section().require("joints");
-  problem_.start = Config::Map(joint_numbers(joints).data());
+  problem_.start = Config::of(joint_numbers(joints).data());
 }
 
 void ProblemReader::read_start_place() {
@@ -672,7 +672,7 @@ void ProblemReader::read_end(const YamlValue& path, const Chain& chain) {
   problem_.end =
       leaves_out_roll(joints, chain)
           ? with_roll_onto(given_waypoints_in_base(problem_).back(), chain, without_roll(joints))
-          : Config(Config::Map(joint_numbers(joints).data()));
+          : Config::of(joint_numbers(joints).data());
 }
 
 void ProblemReader::read_closed(const YamlValue& path, const Chain& chain) {

@@ -165,7 +165,7 @@ class StrokesWriter {
                      {"words", words(one)},
                      {"strokes", one.strokes},
                      {"length", or_null(one.length)},
-                     {"home", one.home ? Json(*one.home) : Json(nullptr)},
+                     {"home", one.home ? Json(one.home->coordinates()) : Json(nullptr)},
                      {"outcome", to_string(one.outcome)},
                      {"cost", or_null(one.cost)}});
     for (const AdviceAlone& one : all.alone)

@@ -112,7 +112,7 @@ Json row_json(const TrajectoryRow& row, bool roll) {
 }
 
 Json joints_json(const TrajectoryRow& row) {
-  return std::vector<double>(row.q.begin(), row.q.end());
+  return std::vector<double>(row.q.data(), row.q.data() + kDof);
 }
 
 Json trajectory_json(const std::vector<TrajectoryRow>& trajectory) {

@@ -34,7 +34,7 @@ std::string fields_of(const std::array<const TrajectoryRow*, 2>& rows) {
   for (const TrajectoryRow* row : rows) text += ',' + csv_number(row->phi);
   for (const TrajectoryRow* row : rows) text += ',' + std::to_string(row->branch);
   for (const TrajectoryRow* row : rows)
-    for (const double joint : row->q) text += ',' + csv_number(joint);
+    for (const double joint : row->q.coordinates()) text += ',' + csv_number(joint);
   return text;
 }
 
@@ -46,7 +46,7 @@ std::string to_workcell_motion_csv(const Motion& motion,
   for (std::size_t k = 0; k < first.size(); ++k) {
     text += csv_number(first[k].t) + ',' + fields_of({&first[k].row, &second[k].row});
     for (const Config* values : {&first[k].v, &second[k].v, &first[k].a, &second[k].a})
-      for (const double value : *values) text += ',' + csv_number(value);
+      for (const double value : values->coordinates()) text += ',' + csv_number(value);
     text += '\n';
   }
   return text;

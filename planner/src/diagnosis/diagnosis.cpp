@@ -379,7 +379,7 @@ class Inspector {
       if (error.norm() <= kThere) return true;
       Eigen::Matrix<double, 6, kDof> jacobian = chain.jacobian(q);
       if (chain.roll) jacobian.col(kDof - 1).setZero();
-      q += jacobian.transpose() * (jacobian * jacobian.transpose()).ldlt().solve(error);
+      q += Config(jacobian.transpose() * (jacobian * jacobian.transpose()).ldlt().solve(error));
       if (!q.allFinite()) return false;
     }
     return false;

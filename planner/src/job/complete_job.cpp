@@ -70,8 +70,9 @@ void turn_along(std::size_t count, double from, double to, const RowAt& row_at) 
 /// Returns the distance of joints from the straight move between two others, rad.
 double distance_from_move(const Config& q, const Config& from, const Config& to) {
   const Config along = to - from;
-  const double length2 = along.squaredNorm();
-  const double share = length2 > 0 ? std::clamp((q - from).dot(along) / length2, 0.0, 1.0) : 0.0;
+  const double length2 = joint_squared_norm(along);
+  const double share =
+      length2 > 0 ? std::clamp(joint_dot(q - from, along) / length2, 0.0, 1.0) : 0.0;
   return (q - from - share * along).lpNorm<Eigen::Infinity>();
 }
 

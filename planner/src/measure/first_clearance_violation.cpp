@@ -91,7 +91,7 @@ class OpenParts {
       double followers = 0;
       for (int j = 0; j < kDof; ++j)
         followers += move[j] * rule.followers.turns[static_cast<std::size_t>(j)];
-      off_chords_.push_back(off_chords_.back() + (move.sum() + followers) * bound / 4);
+      off_chords_.push_back(off_chords_.back() + (joint_sum(move) + followers) * bound / 4);
     }
   }
 

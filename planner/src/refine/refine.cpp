@@ -224,9 +224,9 @@ double largest_bend(const ToolPath& path, const std::vector<TrajectoryRow>& rows
     const auto k = static_cast<std::size_t>(i);
     const double h0 = path.layer(i).travel - path.layer(i - 1).travel,
                  h1 = path.layer(i + 1).travel - path.layer(i).travel;
-    most = std::max(most, (2 / (h0 + h1) *
-                           ((rows[k + 1].q - rows[k].q) / h1 - (rows[k].q - rows[k - 1].q) / h0))
-                              .norm());
+    most = std::max(
+        most, joint_norm(2 / (h0 + h1) *
+                         ((rows[k + 1].q - rows[k].q) / h1 - (rows[k].q - rows[k - 1].q) / h0)));
   }
   return most;
 }

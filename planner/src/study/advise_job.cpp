@@ -198,7 +198,7 @@ class JobTrials {
       const Answer found = plan_job(robot_, changed, options);
       if (!found.arm().parts.empty()) {
         Config home = found.arm().parts.front().rows.front().q;
-        for (double& joint : home) joint = std::round(1e4 * joint) / 1e4;
+        for (double& joint : home.coordinates()) joint = std::round(1e4 * joint) / 1e4;
         changed.arm().home = advice.home = home;
         add(std::move(advice), changed);
         return;

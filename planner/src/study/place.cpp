@@ -63,7 +63,8 @@ class LeastMargins {
   Path& path_of(const PlanView& view, const std::vector<TrajectoryRow>& rows,
                 const Budget& budget) {
     std::vector<double> joints;
-    for (const TrajectoryRow& row : rows) joints.insert(joints.end(), row.q.begin(), row.q.end());
+    for (const TrajectoryRow& row : rows)
+      joints.insert(joints.end(), row.q.data(), row.q.data() + kMaxDof);
     auto known = paths_.find(joints);
     if (known != paths_.end()) return known->second;
     // Paths may be of many thousand rows.

@@ -259,7 +259,7 @@ class Completion {
       Eigen::Matrix<double, 6, 1> off;
       off << goal.translation() - tool.translation(), turned.angle() * turned.axis();
       if (off.norm() <= kReached) return row;
-      row.q += chain_.jacobian(row.q).completeOrthogonalDecomposition().solve(off);
+      row.q += Config(chain_.jacobian(row.q).completeOrthogonalDecomposition().solve(off));
       if (!((row.q - straight).lpNorm<Eigen::Infinity>() <= kFarthest)) break;
     }
     refuse(

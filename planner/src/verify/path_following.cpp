@@ -136,7 +136,7 @@ ToolMotion tool_motion(const Chain& chain, const Config& from, const Config& to,
     if (chain.limit[j].slides) reach += std::max(std::abs(from[at]), std::abs(to[at]));
     if (j > 0) reach += (chain.point[j] - chain.point[j - 1]).norm();
   }
-  const PoseDistance chord{move.sum() * swept / 8, move.sum() * move.sum() / 16};
+  const PoseDistance chord{joint_sum(move) * swept / 8, joint_sum(move) * joint_sum(move) / 16};
   const double parts2 = std::max(chord.position / std::max(0.01 * tolerance.position, kForgiven),
                                  chord.angle / std::max(0.01 * tolerance.angle, kForgiven));
   const auto parts = static_cast<int>(

@@ -29,7 +29,7 @@ Trajectory to_trajectory(const py::object& rows) {
   auto all =
       std::make_shared<std::vector<TrajectoryRow>>(static_cast<std::size_t>(joints.shape(0)));
   for (py::ssize_t k = 0; k < joints.shape(0); ++k)
-    (*all)[static_cast<std::size_t>(k)].q = Eigen::Map<const Config>(joints.data(k, 0));
+    (*all)[static_cast<std::size_t>(k)].q = Config::of(joints.data(k, 0));
   return {std::move(all), {}};
 }
 

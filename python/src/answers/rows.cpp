@@ -42,7 +42,7 @@ Trajectory make_trajectory(const ArrayLike& joints, const ArrayLike& s, const Ar
   auto rows = std::make_shared<Rows>(static_cast<std::size_t>(q.shape(0)));
   for (py::ssize_t k = 0; k < q.shape(0); ++k) {
     TrajectoryRow& row = (*rows)[static_cast<std::size_t>(k)];
-    row.q = Eigen::Map<const Config>(q.data(k, 0));
+    row.q = Config::of(q.data(k, 0));
     row.s = along.at(k);
     if (!phi.is_none()) row.phi = angle.at(k);
     if (!roll.is_none()) row.roll = turn.at(k);

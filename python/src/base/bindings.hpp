@@ -19,6 +19,16 @@
 // Python changes a scene in place, so it must never be copied into a list.
 PYBIND11_MAKE_OPAQUE(std::vector<swivel::SceneObject>)
 
+/// Gives Python a Config as an array of the arm's coordinates, (7,). Arguments are read by
+/// to_posture() and to_joints().
+template <>
+struct pybind11::detail::type_caster<swivel::Config> {
+  static constexpr auto name = const_name("numpy.ndarray[numpy.float64[7, 1]]");
+  static handle cast(const swivel::Config& q, return_value_policy, handle) {
+    return array_t<double>(swivel::kDof, q.data()).release();
+  }
+};
+
 namespace swivel::python {
 
 namespace py = pybind11;

@@ -217,7 +217,7 @@ py::array_t<double> tool_poses(const Robot& robot, const ArrayLike& joints) {
   const py::ssize_t count = states.shape(0);
   py::array_t<double> poses({count, py::ssize_t{4}, py::ssize_t{4}});
   for (py::ssize_t k = 0; k < count; ++k) {
-    const Pose pose = chain.tool(Config(Eigen::Map<const Config>(states.data(k, 0))));
+    const Pose pose = chain.tool(Config::of(states.data(k, 0)));
     Eigen::Map<Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(poses.mutable_data(k, 0, 0)) =
         pose.matrix();
   }
@@ -717,7 +717,7 @@ std::optional<Config> to_posture(py::handle joints, const char* name) {
   if (array.ndim() != 1 || array.shape(0) != kDof)
     throw py::value_error(std::string(name) + " of shape " + shape_text(array) +
                           ": allowed is (7,), rad");
-  return Config(Eigen::Map<const Config>(array.data()));
+  return Config::of(array.data());
 }
 
 Waypoint to_waypoint(py::handle source, bool position_alone) {

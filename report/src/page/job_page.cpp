@@ -153,7 +153,7 @@ class JobPage {
       if (!part.run) {
         json["rows"] = Json::array();
         for (const TrajectoryRow& row : part.rows)
-          json["rows"].push_back({{"q", std::vector<double>(row.q.begin(), row.q.end())}});
+          json["rows"].push_back({{"q", std::vector<double>(row.q.data(), row.q.data() + kDof)}});
         json["barred_by"] = part.barred_by ? Json(*part.barred_by) : Json(nullptr);
       }
       list.push_back(std::move(json));
@@ -173,7 +173,7 @@ class JobPage {
     if (!job_.arm().home) return nullptr;
     const std::optional<NoTransition>& none = result_.arm().no_transition;
     const bool barred = none && none->where == NoTransition::Where::kHome && none->bodies;
-    return {{"q", std::vector<double>(job_.arm().home->begin(), job_.arm().home->end())},
+    return {{"q", std::vector<double>(job_.arm().home->data(), job_.arm().home->data() + kDof)},
             {"pair", barred ? Json(*none->bodies) : Json(nullptr)}};
   }
 

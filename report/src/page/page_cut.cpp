@@ -228,7 +228,7 @@ Obstruction obstruction(const PathEnd& end, const LatticeMap::Node& node, const 
 Json last_row_json(const PathEnd& end, const PageRow& row) {
   Json json = place_json(row);
   json["s"] = row.at.s;
-  json["q"] = std::vector<double>(row.at.q.begin(), row.at.q.end());
+  json["q"] = std::vector<double>(row.at.q.data(), row.at.q.data() + kDof);
   json["pair"] = json["line"] = nullptr;
   json["what"] = "no way on from here: " + end.reason() + limit_words(end);
   json["is_row"] = true;
@@ -260,7 +260,7 @@ Json cut_json(const LatticeMap& map, const Lattice& lattice, const World& world,
                {"phi", value},
                {"sheet", cell / map.angles},
                {"angle", map.place(value)},
-               {"q", std::vector<double>(q.begin(), q.end())},
+               {"q", std::vector<double>(q.data(), q.data() + kDof)},
                {"pair", std::move(by.pair)},
                {"line", std::move(by.line)},
                {"what", std::move(by.what)}};

@@ -218,7 +218,7 @@ class MapWriter {
     std::vector<std::uint16_t> layers;
     std::vector<float> phis, rolls;
     for (const Shown& pose : poses_) {
-      for (const double q : pose.q)
+      for (const double q : pose.q.coordinates())
         joints.push_back(static_cast<std::int16_t>(std::lround(q / reach * 32767)));
       layers.push_back(static_cast<std::uint16_t>(pose.layer));
       phis.push_back(static_cast<float>(pose.phi));

@@ -59,7 +59,7 @@ std::vector<PageRow> placed(const Lattice& lattice, const LatticeMap& map,
         const int cell = static_cast<int>(std::lround(row.angle)) % map.angles;
         const auto node = lattice.node(static_cast<int>(i), solution * map.angles + cell);
         if (!node) continue;
-        const double away = (*node - row.at.q).norm();
+        const double away = joint_norm(*node - row.at.q);
         if (away < least) least = away, row.solution = solution;
       }
     }
@@ -106,7 +106,7 @@ Json rows_json(const World& world, const Lattice& lattice, const std::vector<Pag
     const TrajectoryRow& at = shown[i].at;
     Json row = place_json(shown[i]);
     row["s"] = at.s;
-    row["q"] = std::vector<double>(at.q.begin(), at.q.end());
+    row["q"] = std::vector<double>(at.q.data(), at.q.data() + kDof);
     row["error_mm"] = i < errors.size() ? Json(errors[i]) : Json(nullptr);
     if (const auto clearance = query.clearance(at.q)) {
       row["clearance_mm"] = 1e3 * clearance->distance;
@@ -220,8 +220,8 @@ std::vector<double> places_of(std::span<const TimedRow> samples,
       const Config way = rows[step + 1].q - rows[step].q;
       if (length > 0)
         share = (sample.row.s - path->layer(static_cast<int>(step)).s) / length;
-      else if (way.squaredNorm() > 0)
-        share = (sample.row.q - rows[step].q).dot(way) / way.squaredNorm();
+      else if (joint_squared_norm(way) > 0)
+        share = joint_dot(sample.row.q - rows[step].q, way) / joint_squared_norm(way);
       else
         share = 0;
       if (share < 1 || step + 2 >= rows.size()) break;
@@ -261,7 +261,7 @@ Json played_joints(const std::vector<TimedRow>& samples, double rate, std::size_
   const std::size_t each = samples.size() / most + 1;
   std::vector<std::int32_t> values;
   const auto add = [&](const TimedRow& sample) {
-    for (const double q : sample.row.q)
+    for (const double q : sample.row.q.coordinates())
       values.push_back(
           static_cast<std::int32_t>(std::lround(std::clamp(q / kUnit, -kMost, kMost))));
   };

@@ -73,7 +73,7 @@ Json plan_json(const PlacementCell& cell, const std::vector<TrajectoryRow>& rows
   std::vector<float> s, joints;  // for drawing
   for (const TrajectoryRow& row : rows) {
     s.push_back(static_cast<float>(row.s));
-    for (const double q : row.q) joints.push_back(static_cast<float>(q));
+    for (const double q : row.q.coordinates()) joints.push_back(static_cast<float>(q));
   }
   Json poses = Json::array();
   for (const SceneObject& object : scene) poses.push_back(pose_json(object.pose));

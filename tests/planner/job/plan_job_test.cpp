@@ -173,8 +173,8 @@ void expect_shows(const PlanView& view, const Part& part, const std::string& wha
   const std::vector<TrajectoryRow> rows = view.lattice.path_rows(view.path);
   ASSERT_EQ(rows.size(), part.rows.size()) << what;
   for (std::size_t i = 0; i < rows.size(); ++i)
-    for (const double away : Config(rows[i].q - part.rows[i].q))
-      ASSERT_NEAR(wrap_angle(away), 0, 1e-9) << what << ", row " << i;
+    for (int j = 0; j < kDof; ++j)
+      ASSERT_NEAR(wrap_angle(rows[i].q[j] - part.rows[i].q[j]), 0, 1e-9) << what << ", row " << i;
   for (std::size_t i = 0; i < view.path.size(); ++i)
     ASSERT_EQ(view.verdicts->node(static_cast<int>(i), view.path[i]), Verdict::kValid) << what;
 }
@@ -401,8 +401,8 @@ std::array<double, 3> greatest_shares(const std::vector<TimedRow>& rows, const J
       values[k] = (values[k + 1] - values[k]) * rate;
     values.pop_back();
     for (const Config& value : values)
-      most[order] =
-          std::max(most[order], value.cwiseAbs().cwiseQuotient(*limits[order]).maxCoeff());
+      most[order] = std::max(
+          most[order], value.cwiseAbs().cwiseQuotient(*limits[order]).head<kDof>().maxCoeff());
   }
   return most;
 }

@@ -457,8 +457,8 @@ TEST(Agreement, LimitsRoundedUpGiveTheSamePath) {
   };
   const Chain chain = arm_of(iiwa(3)).chain;
   Config q0, q1;
-  q0 << 0.3, 0.5, 0.2, -1.2, 0.1, 0.6, 0.0;
-  q1 << 0.5, 0.7, 0.1, -1.0, 0.3, 0.8, 0.2;
+  q0 = {0.3, 0.5, 0.2, -1.2, 0.1, 0.6, 0.0};
+  q1 = {0.5, 0.7, 0.1, -1.0, 0.3, 0.8, 0.2};
   std::vector<PlanResult> results;
   for (const double limit : {3.14159, 3.1416}) {
     PathProblem problem = problem_for(iiwa(limit));

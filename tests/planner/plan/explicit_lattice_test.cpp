@@ -30,7 +30,7 @@ std::optional<Config> projected(const Chain& chain, const Pose& pose, Config q) 
     Eigen::Matrix<double, 6, 1> error;
     error << pose.translation() - reached.translation(), turn.angle() * turn.axis();
     if (error.norm() < 1e-12) return q;
-    q += chain.jacobian(q).completeOrthogonalDecomposition().solve(error);
+    q += Config(chain.jacobian(q).completeOrthogonalDecomposition().solve(error));
     if (!(q.lpNorm<Eigen::Infinity>() < 50)) return std::nullopt;
   }
   return std::nullopt;
@@ -244,7 +244,7 @@ TEST(ExplicitLattice, ALimitThatEndsTheNodesIsNamed) {
   const TestRobot robot = offset_robot();
   ArmModel arm = arm_of(robot);
   Config start, end;
-  start << 0.3, 0.5, 0.2, -1.2, 0.1, 0.6, 0.0;
+  start = {0.3, 0.5, 0.2, -1.2, 0.1, 0.6, 0.0};
   end = start;
   end[1] += 0.5;  // beyond the limit, which is set between
   PathProblem problem = problem_for(robot);

@@ -171,7 +171,7 @@ TEST(Inexact, PosturesAtTheLimitsAreRows) {
     EXPECT_FALSE(arm.exact);
     std::printf("%s: off by %.2g mm and %.2g mrad, misfit up to %.2g rad\n", robot.name.c_str(),
                 1e3 * arm.deviation.offset, 1e3 * arm.deviation.angle, arm.fit_error.maxCoeff());
-    EXPECT_GT(arm.fit_error.minCoeff(), 0);
+    EXPECT_GT(arm.fit_error.coordinates().minCoeff(), 0);
     for (int trial = 0; trial < trials(40); ++trial) {
       Config q = random_config(chain, random);
       const int joint = random.below(kDof);

@@ -184,7 +184,9 @@ std::optional<Config> nearest_on_path(const PreparedRobot& robot, const PathProb
   const SrsLattice lattice(robot.arm().chain, robot.srs(), there, free);
   std::vector<Lattice::Node> nodes;
   lattice.layer_nodes(0, nodes);
-  const auto distance = [&](const Lattice::Node& node) { return lattice.delta(q, node.q).norm(); };
+  const auto distance = [&](const Lattice::Node& node) {
+    return joint_norm(lattice.delta(q, node.q));
+  };
   const auto nearest =
       std::min_element(nodes.begin(), nodes.end(),
                        [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
@@ -343,7 +345,7 @@ TEST(StartAt, WhatDoesNotFitIsBadInput) {
   // A given start without a place stands at the path's beginning, within the tolerance.
   PathProblem first = problem;
   first.start = whole.trajectory[0].q;
-  first.start->tail<1>()[0] += 1e-4;
+  (*first.start)[kDof - 1] += 1e-4;
   EXPECT_THROW(static_cast<void>(plan(robot, first)), InputError);
   first.start_tolerance = 1e-3;
   const PlanResult result = plan(robot, first);

@@ -28,7 +28,7 @@ PathProblem full_problem() {
   PathProblem problem = problem_for(data_robot("iiwa14"));
   const Chain chain = arm_of(data_robot("iiwa14")).chain;
   Config q0, q1;
-  q0 << 0.3, 0.5, 0.2, -1.2, 0.1, 0.6, 0.0;
+  q0 = {0.3, 0.5, 0.2, -1.2, 0.1, 0.6, 0.0};
   q1 = q0 + 0.05 * Config::Ones();
   problem.waypoints = {waypoint_of(chain.tool(q0)), waypoint_of(chain.tool(q1))};
   problem.resolution = {.ds = 0.02, .dphi = 0.3, .dalpha = 0.3};

@@ -290,8 +290,7 @@ TEST(Windings, TellHowFarAJointWouldTurn) {
   wide.joints[6] = true;
   const TestRobot robot = widened(data_robot("iiwa14"), wide);
   PathProblem problem = problem_for(robot);
-  Config q;
-  q << 0.1, 0.6, 0.2, -1.4, 0.1, 1.2, 0.3;
+  Config q{0.1, 0.6, 0.2, -1.4, 0.1, 1.2, 0.3};
   const Pose tool = arm_of(robot).chain.tool(q);
   for (int k = 0; k <= 20; ++k) {
     Pose pose = tool;
@@ -338,8 +337,7 @@ TEST(Windings, JointsAreCirclesOnlyWhereNoStepTurnsThemByHalfATurn) {
   wide.joints[0] = wide.joints[6] = true;
   PathProblem problem = problem_for(widened(data_robot("iiwa14"), wide));
   const Chain chain = arm_of(widened(data_robot("iiwa14"), wide)).chain;
-  Config q;
-  q << 0.1, 0.6, 0.2, -1.4, 0.1, 1.2, 0.3;
+  Config q{0.1, 0.6, 0.2, -1.4, 0.1, 1.2, 0.3};
   problem.waypoints = {waypoint_of(chain.tool(q)), waypoint_of(chain.tool(q))};
   problem.waypoints[1].position.x() -= 0.05;
   const auto circles = [](const PathProblem& of) {

@@ -33,8 +33,7 @@ PathProblem short_path(const TestRobot& robot, const Config& start) {
 }
 
 Config posture(double q6) {
-  Config q;
-  q << 0, 0.5, 0, 1.2, 0, q6, 0;
+  Config q{0, 0.5, 0, 1.2, 0, q6, 0};
   return q;
 }
 

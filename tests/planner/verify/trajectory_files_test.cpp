@@ -245,8 +245,7 @@ struct Planned {
 };
 Planned along(const std::vector<std::pair<Vector3d, double>>& steps) {
   Planned planned{problem_for(data_robot("iiwa14")), nullptr, {}};
-  Config q;
-  q << 0.2, 0.6, 0.1, -1.2, 0.2, 0.9, 0.3;
+  Config q{0.2, 0.6, 0.1, -1.2, 0.2, 0.9, 0.3};
   const Chain chain = build_arm(*planned.problem.model, planned.problem.base_link,
                                 planned.problem.tip_link, {}, Pose::Identity())
                           .chain;

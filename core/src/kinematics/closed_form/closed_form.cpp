@@ -533,12 +533,12 @@ SixChain lock_joint(const Chain& chain, int joint, double value) {
 
 Config6 without_joint(const Config& q, int joint) {
   Config6 result;
-  result << q.head(joint), q.tail(kSix - joint);
+  result << q.head(joint), q.segment(joint + 1, kSix - joint);
   return result;
 }
 
 Config with_joint(const Config6& q, int joint, double value) {
-  Config result;
+  Eigen::Matrix<double, kDof, 1> result;
   result << q.head(joint), value, q.tail(kSix - joint);
   return result;
 }

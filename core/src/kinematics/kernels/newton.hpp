@@ -22,7 +22,8 @@ enum class NewtonMove {
   kLocked    ///< with one joint held at a value
 };
 
-/// The input and output of Newton's method for n points at once; arrays have n or 7 n numbers.
+/// The input and output of Newton's method for n points at once. Arrays have n numbers, or `stride`
+/// n, of which the first seven of each point are used.
 struct NewtonTask {
   const NewtonChain* chain;
   double tool[4][3];  ///< axes and origin of the goal in base
@@ -34,6 +35,7 @@ struct NewtonTask {
   int joint;            ///< for kLocked, 0-based
   const double* value;  ///< for kLocked, one for each point
   int n;
+  int stride;  ///< numbers from a point to the next in the arrays below, at least 7
   const double* start;
   double* q;
   double* particular;  ///< for kNone: q + particular + lambda null closes the error to first order

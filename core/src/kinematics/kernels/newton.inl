@@ -348,7 +348,7 @@ struct Lanes {
     double lanes[kOwn];
     __builtin_memcpy(lanes, &value, sizeof value);
     for (int lane = 0; lane < kOwn && at + lane < task.n; ++lane)
-      to[(at + lane) * 7 + offset] = lanes[lane];
+      to[(at + lane) * task.stride + offset] = lanes[lane];
   }
 };
 
@@ -395,7 +395,7 @@ template <class V>
 void solve_lanes(const NewtonTask& task, int at) {
   const Lanes<V> lanes{task, at};
   V q[7], found = V{};
-  for (int j = 0; j < 7; ++j) q[j] = lanes.gather(task.start, 7, j);
+  for (int j = 0; j < 7; ++j) q[j] = lanes.gather(task.start, task.stride, j);
   if (task.move == NewtonMove::kNone) {
     V particular[7], null[7];
     found = linear(task, q, particular, null);

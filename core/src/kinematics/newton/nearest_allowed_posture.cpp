@@ -32,7 +32,7 @@ std::optional<Config> nearest_allowed_posture(const Chain& chain, const Config& 
       auto next = point_near(side.at.q + length * side.at.tangent);
       side.leads_on = next.has_value();
       if (!next) continue;
-      if (next->tangent.dot(side.at.tangent) < 0) next->tangent = -next->tangent;
+      if (joint_dot(next->tangent, side.at.tangent) < 0) next->tangent = -next->tangent;
       side.at = *next;
       if (allowed(side.at.q)) return side.at.q;
     }

@@ -90,11 +90,13 @@ NewtonTask PoseNewton::task(const Pose& tool, NewtonMove move, int steps) const 
   task.steps = steps;
   task.longest = kLongest;
   task.settled = kSettled;
+  // An array of configurations is one of numbers.
+  static_assert(sizeof(Config) == kMaxDof * sizeof(double));
+  task.stride = kMaxDof;
   return task;
 }
 
 void PoseNewton::run(NewtonTask& task, std::span<const Config> starts, Points& out) {
-  static_assert(sizeof(Config) == kDof * sizeof(double));  // so an array of them is one of numbers
   out.q.resize(starts.size());
   out.tangent.resize(starts.size());
   out.found.resize(starts.size());
@@ -131,20 +133,20 @@ void PoseNewton::tangents(std::span<const Config> q, const Pose& tool, Points& o
   NewtonTask all = task(tool, NewtonMove::kNone, 0);
   run(all, q, out);
   std::copy(q.begin(), q.end(), out.q.begin());
-  for (Config& tangent : out.tangent) tangent /= tangent.norm();
+  for (Config& tangent : out.tangent) tangent /= joint_norm(tangent);
 }
 
 std::optional<PoseNewton::Point> PoseNewton::nearest(const Config& start, const Pose& tool,
                                                      const Config& scale2, int steps) const {
   NewtonTask one = task(tool, NewtonMove::kNearest, steps);
-  std::copy(scale2.begin(), scale2.end(), one.scale2);
+  std::copy_n(scale2.data(), kDof, one.scale2);
   return run(one, start);
 }
 
 void PoseNewton::nearest(std::span<const Config> starts, const Pose& tool, const Config& scale2,
                          int steps, Points& out) const {
   NewtonTask all = task(tool, NewtonMove::kNearest, steps);
-  std::copy(scale2.begin(), scale2.end(), all.scale2);
+  std::copy_n(scale2.data(), kDof, all.scale2);
   run(all, starts, out);
 }
 
@@ -171,12 +173,13 @@ std::optional<PoseNewton::Point> PoseNewton::approach(const Config& start, const
   Linear at;
   for (int step = 0; step < steps; ++step) {
     if (!linear(q, tool, at)) return std::nullopt;
-    Config move = at.particular - (at.null.dot(at.particular) / at.null.squaredNorm()) * at.null;
-    const double length2 = move.squaredNorm();
+    Config move =
+        at.particular - (joint_dot(at.null, at.particular) / joint_squared_norm(at.null)) * at.null;
+    const double length2 = joint_squared_norm(move);
     if (!(length2 < 1e12)) return std::nullopt;
     if (length2 > kStride * kStride) move *= kStride / std::sqrt(length2);
     q += move;
-    if (length2 < kSettled * kSettled) return Point{q, at.null / at.null.norm()};
+    if (length2 < kSettled * kSettled) return Point{q, at.null / joint_norm(at.null)};
   }
   return std::nullopt;
 }

@@ -8,7 +8,7 @@
 namespace swivel {
 
 bool less(const Config& a, const Config& b) {
-  return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+  return std::lexicographical_compare(a.data(), a.data() + kMaxDof, b.data(), b.data() + kMaxDof);
 }
 
 namespace {
@@ -114,7 +114,7 @@ void Cutter::find_crossings(const std::vector<Point>& points, int chords) {
     std::optional<Cubic> cubic;
     const std::size_t before = crossings_.size();
     // A cubic leaves its first point by 1.6 chords at most (below).
-    const double away = 1.6 * difference(b.q, a.q, data_.slide).norm() + 1e-9;
+    const double away = 1.6 * joint_norm(difference(b.q, a.q, data_.slide)) + 1e-9;
     for (int j = 0; j < kDof; ++j) {
       const auto at = static_cast<std::size_t>(j);
       if (data_.circle[at]) continue;
@@ -166,11 +166,11 @@ bool Cutter::solve_end(const std::vector<Point>& points, const Crossing& crossin
     Config start = guess;
     start[joint] = value;
     const auto found = data_.newton.with_joint_at(start, tool_, joint, value);
-    if (!found || difference(found->q, guess, data_.slide).norm() > 0.1) return false;
+    if (!found || joint_norm(difference(found->q, guess, data_.slide)) > 0.1) return false;
     end = *found;
     for (int j = 0; j < kDof; ++j)
       if (j != joint) end.q[j] = data_.image(end.q[j], static_cast<std::size_t>(j));
-    if (end.tangent.dot(cubic.d) < 0) end.tangent = -end.tangent;
+    if (joint_dot(end.tangent, cubic.d) < 0) end.tangent = -end.tangent;
     // Where another joint has just passed its own limit, that one ends the arc.
     int worst = -1;
     double most = 0;
@@ -223,10 +223,10 @@ void Cutter::finish(SelfMotionArc&& arc) {
     const std::size_t next = (k + 1) % arc.q.size();
     const Cubic cubic({arc.q[k], arc.tangent[k]}, {arc.q[next], arc.tangent[next]}, 1, data_.slide);
     const Config middle = 1.5 * cubic.d - 0.25 * (cubic.m0 + cubic.m1);
-    length +=
-        (data_.scale.cwiseProduct(cubic.m0).norm() + 4 * data_.scale.cwiseProduct(middle).norm() +
-         data_.scale.cwiseProduct(cubic.m1).norm()) /
-        6;
+    length += (joint_norm(data_.scale.cwiseProduct(cubic.m0)) +
+               4 * joint_norm(data_.scale.cwiseProduct(middle)) +
+               joint_norm(data_.scale.cwiseProduct(cubic.m1))) /
+              6;
     arc.length.push_back(length);
   }
   out_.push_back(std::move(arc));
@@ -254,7 +254,7 @@ bool Cutter::within_limits(const std::vector<Point>& points, const Piece& piece)
 void Cutter::keep(const std::vector<Point>& points, const Piece& piece) {
   constexpr double kSame2 = 1e-16;  // rad^2: two points nearer than its root are one
   const auto coincide = [this](const Config& a, const Config& b) {
-    return difference(a, b, data_.slide).squaredNorm() < kSame2;
+    return joint_squared_norm(difference(a, b, data_.slide)) < kSame2;
   };
   SelfMotionArc arc;
   arc.slide = data_.slide;

@@ -52,7 +52,7 @@ struct Vertex : Point {
 };
 
 double turned_away(const Config& direction, const Config& chord, double length) {
-  return 1 - direction.dot(chord) / length;
+  return 1 - joint_dot(direction, chord) / length;
 }
 
 /// All curves of one pose.
@@ -146,7 +146,7 @@ class Curves {
       return bent ? Config(ahead + (step * step / 2) * bend) : ahead;
     }
     void go(const Point& next) {
-      bend = (next.tangent - here.tangent) / std::sqrt((next.q - here.q).squaredNorm());
+      bend = (next.tangent - here.tangent) / std::sqrt(joint_squared_norm(next.q - here.q));
       bent = true;
       here = next;
     }
@@ -226,7 +226,7 @@ void Curves::add_seeds() {
         bool twice = false;
         for (std::size_t other = static_cast<std::size_t>(first_.back()); other < vertices_.size();
              ++other)
-          twice = twice || difference(vertices_[other].q, p->q).squaredNorm() < 1e-12;
+          twice = twice || joint_squared_norm(difference(vertices_[other].q, p->q)) < 1e-12;
         if (twice) continue;
       }
       if (p->tangent[data_.lock] < 0) p->tangent = -p->tangent;
@@ -244,13 +244,13 @@ std::optional<double> Curves::fit_error(int half, int other) const {
   constexpr double kUneven = 0.02;
   if (!maybe_near(at(other).q, at(half).q, kLongChord)) return std::nullopt;
   const Config chord = difference(at(other).q, at(half).q);
-  const double length2 = chord.squaredNorm();
+  const double length2 = joint_squared_norm(chord);
   if (!(length2 > 0 && length2 < kLongChord * kLongChord)) return std::nullopt;
   const double length = std::sqrt(length2);
   const Config t0 = outward(half), t1 = -outward(other);
   if (turned_away(t0, chord, length) > kBend || turned_away(t1, chord, length) > kBend)
     return std::nullopt;
-  const double miss = (chord - (length / 2) * (t0 + t1)).norm();
+  const double miss = joint_norm(chord - (length / 2) * (t0 + t1));
   if (miss > kUneven * length || data_.passes_alignment(at(half).q, chord)) return std::nullopt;
   return miss;
 }
@@ -258,7 +258,7 @@ std::optional<double> Curves::fit_error(int half, int other) const {
 bool Curves::straight(int half, int other, const Config& chord) const {
   constexpr double kStraight = 0.02;  // 1 - cosine between the ends: 0.2 rad
   constexpr double kLong = 0.3;       // rad
-  return chord.norm() < kLong && outward(half).dot(-outward(other)) > 1 - kStraight;
+  return joint_norm(chord) < kLong && joint_dot(outward(half), -outward(other)) > 1 - kStraight;
 }
 
 Config Curves::middle(int half, int other) const {
@@ -274,12 +274,12 @@ std::optional<Curves::Turn> Curves::turning(int half, int other) const {
   if (!maybe_near(at(other).q, at(half).q, kLong)) return std::nullopt;
   const Config chord = difference(at(other).q, at(half).q), t0 = outward(half),
                t1 = -outward(other);
-  const double length = chord.norm();
-  if (!(length > 0 && length < kLong) || t0.dot(t1) < kLeastCosine) return std::nullopt;
+  const double length = joint_norm(chord);
+  if (!(length > 0 && length < kLong) || joint_dot(t0, t1) < kLeastCosine) return std::nullopt;
   // An arc of a circle has its chord along the bisector of its tangents.
   const Config sum = t0 + t1;
-  const double both = sum.norm(), along = chord.dot(sum) / both;
-  const double miss = (chord - (along / both) * sum).norm() / length;
+  const double both = joint_norm(sum), along = joint_dot(chord, sum) / both;
+  const double miss = joint_norm(chord - (along / both) * sum) / length;
   if (!(along > 0 && miss < kOff) || data_.passes_alignment(at(half).q, chord)) return std::nullopt;
   // With tangents of this length a cubic passes the middle of the circle's arc.
   const double tangent = length / (0.5 + 0.25 * both);
@@ -293,7 +293,7 @@ void Curves::join(int half, int other, int depth, std::vector<Gap>& gaps) {
     if (depth == 0 || straight(half, other, chord))
       link(half, other);
     else
-      gaps.push_back({half, other, middle(half, other), 0.1 * chord.norm()});
+      gaps.push_back({half, other, middle(half, other), 0.1 * joint_norm(chord)});
   } else if (depth > 0) {
     if (const auto turn = turning(half, other)) gaps.push_back(turn->gap);
   }
@@ -311,8 +311,9 @@ void Curves::close(std::vector<Gap> gaps) {
     for (std::size_t k = 0; k < gaps.size(); ++k) {
       const Gap& gap = gaps[k];
       auto p = middles.at(k);
-      if (!p || (p->q - gap.guess).norm() > gap.within || data_.aligned(p->q)) continue;
-      if (p->tangent.dot(difference(at(gap.other).q, at(gap.half).q)) < 0) p->tangent = -p->tangent;
+      if (!p || joint_norm(p->q - gap.guess) > gap.within || data_.aligned(p->q)) continue;
+      if (joint_dot(p->tangent, difference(at(gap.other).q, at(gap.half).q)) < 0)
+        p->tangent = -p->tangent;
       const int v = add(*p, -1);
       join(gap.half, 2 * v, depth - 1, left);
       join(2 * v + 1, gap.other, depth - 1, left);
@@ -387,12 +388,12 @@ std::optional<Point> Curves::accepted(const Point& p, const Config& guess, doubl
                                       std::optional<Point> next) const {
   if (!next) return std::nullopt;
   const Config move = next->q - p.q;
-  const double length = move.norm();
-  if (length > 1.3 * step || (next->q - guess).norm() > 0.1 * step) return std::nullopt;
-  if (next->tangent.dot(p.tangent) < 0) next->tangent = -next->tangent;
-  if (next->tangent.dot(p.tangent) < 0.965 || turned_away(p.tangent, move, length) > 0.03)
+  const double length = joint_norm(move);
+  if (length > 1.3 * step || joint_norm(next->q - guess) > 0.1 * step) return std::nullopt;
+  if (joint_dot(next->tangent, p.tangent) < 0) next->tangent = -next->tangent;
+  if (joint_dot(next->tangent, p.tangent) < 0.965 || turned_away(p.tangent, move, length) > 0.03)
     return std::nullopt;
-  if ((move - (length / 2) * (p.tangent + next->tangent)).norm() > 0.02 * length)
+  if (joint_norm(move - (length / 2) * (p.tangent + next->tangent)) > 0.02 * length)
     return std::nullopt;
   if (data_.passes_alignment(p.q, move)) return std::nullopt;
   return next;
@@ -410,19 +411,19 @@ std::optional<Point> Curves::advance(const Walk& walk, double& step) const {
 
 int Curves::met(int from, int count, const Point& p, const Config& move) const {
   // of what may lie that far along and that near
-  const double length2 = move.squaredNorm(), within = 1.1 * std::sqrt(length2);
+  const double length2 = joint_squared_norm(move), within = 1.1 * std::sqrt(length2);
   int result = -1;
   double first = 2;
   for (const auto& [other, q] : open_) {
     if (!maybe_near(q, p.q, within)) continue;
     if (!open(other) || (other == from && count < 4)) continue;
     const Config way = difference(q, p.q);
-    const double along = way.dot(move) / length2;
+    const double along = joint_dot(way, move) / length2;
     if (!(along > 1e-6 && along <= 1.05) || along >= first) continue;
     const Config inward = -outward(other);
-    if (inward.dot(p.tangent) < 0.9) continue;
+    if (joint_dot(inward, p.tangent) < 0.9) continue;
     // Off the chord by its sagitta at most, and some.
-    if ((way - along * move).squaredNorm() > 0.01 * length2) continue;
+    if (joint_squared_norm(way - along * move) > 0.01 * length2) continue;
     result = other;
     first = along;
   }
@@ -552,12 +553,12 @@ bool Curves::known(const Config& q, const Config& tangent, double near, double p
       const double after = beyond(w.q[data_.lock], q[data_.lock]);
       if (std::min(before, after) > kBeside || std::max(before, after) < -kBeside) continue;
       const Config chord = difference(w.q, v.q);
-      const double length = chord.norm();
+      const double length = joint_norm(chord);
       const Config way = difference(q, v.q);
-      const double along = way.dot(chord) / (length * length);
+      const double along = joint_dot(way, chord) / (length * length);
       if (!(along > -0.1 && along < 1.1)) continue;
-      if (std::abs(tangent.dot(chord)) < 0.8 * length) continue;
-      if ((way - along * chord).norm() < near + part * length) return true;
+      if (std::abs(joint_dot(tangent, chord)) < 0.8 * length) continue;
+      if (joint_norm(way - along * chord) < near + part * length) return true;
     }
   }
   return false;
@@ -604,7 +605,7 @@ void Curves::find(std::span<const Config> known_points) {
       const Config start = kept(with_joint(six, data_.lock, value));
       const auto seed = [&](const Vertex& v) {
         return maybe_near(v.q, start, data_.other, kSeed) &&
-               difference(v.q, start).squaredNorm() < kSeed * kSeed;
+               joint_squared_norm(difference(v.q, start)) < kSeed * kSeed;
       };
       if (std::any_of(vertices_.begin() + first_[k], vertices_.begin() + first_[k + 1], seed))
         continue;

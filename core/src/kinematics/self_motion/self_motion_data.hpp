@@ -46,7 +46,7 @@ inline double wrapped(double angle) {
 struct Cubic {
   Config d, m0, m1;  // chord, and tangents times its length
   Cubic(const Point& a, const Point& b, double sign_b, int slide) : d(difference(b.q, a.q, slide)) {
-    const double length = d.norm();
+    const double length = joint_norm(d);
     m0 = length * a.tangent;
     m1 = (length * sign_b) * b.tangent;
   }

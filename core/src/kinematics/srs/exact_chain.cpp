@@ -136,7 +136,7 @@ Config measure_fit_error(const Chain& chain, const SrsArm& arm) {
       continue;
     const double phi = plane.angle_of(arm.elbow_axis(q));
     Config apart = srs_ik(arm, elbow_circles(arm, plane, tool), phi, arm.branch(q)) - q;
-    for (double& joint : apart) joint = std::abs(wrap_angle(joint));
+    for (double& joint : apart.coordinates()) joint = std::abs(wrap_angle(joint));
     if (apart.maxCoeff() <= kMostCorrection) fit_error = fit_error.cwiseMax(apart);
   }
   return fit_error;

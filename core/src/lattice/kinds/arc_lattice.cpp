@@ -56,23 +56,24 @@ std::optional<Place> nearest_on(const SelfMotionArc& arc, int number, int chord,
   const auto k = static_cast<std::size_t>(chord), next = (k + 1) % arc.q.size();
   const Config line = difference(arc.q[next], arc.q[k], arc.slide),
                way = difference(q, arc.q[k], arc.slide);
-  const double length2 = line.squaredNorm();
-  const double along = way.dot(line) / length2;
+  const double length2 = joint_squared_norm(line);
+  const double along = joint_dot(way, line) / length2;
   if (along < -0.5 || along > 1.5) {
-    if (way.squaredNorm() > within * within && (way - line).squaredNorm() > within * within)
+    if (joint_squared_norm(way) > within * within &&
+        joint_squared_norm(way - line) > within * within)
       return std::nullopt;
   }
   double u = std::clamp(along, 0.0, 1.0);
   Config off = difference(q, arc.at(chord, u), arc.slide);
-  if (off.squaredNorm() > 0.04 * length2 + within * within) return std::nullopt;
+  if (joint_squared_norm(off) > 0.04 * length2 + within * within) return std::nullopt;
   // Two steps along the chord: the cubic runs nearly at its speed.
   for (int step = 0; step < 2; ++step) {
-    const double more = std::clamp(u + off.dot(line) / length2, 0.0, 1.0);
+    const double more = std::clamp(u + joint_dot(off, line) / length2, 0.0, 1.0);
     if (more == u) break;
     u = more;
     off = difference(q, arc.at(chord, u), arc.slide);
   }
-  const double away = off.norm();
+  const double away = joint_norm(off);
   if (away > within) return std::nullopt;
   return Place{number, chord, u, length_at(arc, chord, u), away};
 }
@@ -99,11 +100,12 @@ Box box_of(const SelfMotionArc& arc, int number, int chord) {
   constexpr double kRounding = 1e-9;  // rad: far above that of a few operations on angles
   const auto k = static_cast<std::size_t>(chord), next = (k + 1) % arc.q.size();
   const Config d = difference(arc.q[next], arc.q[k], arc.slide);
-  const double third = d.norm() / 3;
+  const double third = joint_norm(d) / 3;
   const Config first = third * arc.tangent[k], second = d - third * arc.tangent[next];
   const Config low = first.cwiseMin(second).cwiseMin(d).cwiseMin(0),
                high = first.cwiseMax(second).cwiseMax(d).cwiseMax(0);
-  return {number, chord, arc.q[k] + (low + high) / 2, ((high - low) / 2).array() + kRounding};
+  return {number, chord, arc.q[k] + (low + high) / 2,
+          (high - low) / 2 + Config::Constant(kRounding)};
 }
 
 /// Finds the nearest points of a layer's arcs.

@@ -33,16 +33,16 @@ double step_error(const SrsLattice& lattice, int layer, int end, int branch, dou
   Config second = (difference(*ahead, *center) - difference(*center, *behind)) / (kStep * kStep);
   // Remove the part in the tangent plane spanned by theta_s and theta_phi (Gram-Schmidt).
   Config t1 = difference(*s_ahead, *s_behind), t2 = difference(*phi_ahead, *phi_behind);
-  if (t1.norm() > 0) {
-    t1.normalize();
-    second -= second.dot(t1) * t1;
-    t2 -= t2.dot(t1) * t1;
+  if (joint_norm(t1) > 0) {
+    t1 /= joint_norm(t1);
+    second -= joint_dot(second, t1) * t1;
+    t2 -= joint_dot(t2, t1) * t1;
   }
-  if (t2.norm() > 1e-12) {
-    t2.normalize();
-    second -= second.dot(t2) * t2;
+  if (joint_norm(t2) > 1e-12) {
+    t2 /= joint_norm(t2);
+    second -= joint_dot(second, t2) * t2;
   }
-  return 0.5 * second.norm();
+  return 0.5 * joint_norm(second);
 }
 
 }  // namespace swivel

@@ -33,9 +33,9 @@ struct Tree {
   std::vector<Node> nodes;
   [[nodiscard]] std::size_t nearest(const Config& q, const Config& scale) const {
     std::size_t best = 0;
-    double least = (nodes[0].q - q).cwiseProduct(scale).squaredNorm();
+    double least = joint_squared_norm((nodes[0].q - q).cwiseProduct(scale));
     for (std::size_t k = 1; k < nodes.size(); ++k)
-      if (const double d = (nodes[k].q - q).cwiseProduct(scale).squaredNorm(); d < least)
+      if (const double d = joint_squared_norm((nodes[k].q - q).cwiseProduct(scale)); d < least)
         least = d, best = k;
     return best;
   }
@@ -123,7 +123,7 @@ class Search {
     return q;
   }
   [[nodiscard]] double distance(const Config& a, const Config& b) const {
-    return (b - a).cwiseProduct(box_.scale).norm();
+    return joint_norm((b - a).cwiseProduct(box_.scale));
   }
   /// Grows a tree from its nearest node towards q by steps, with `all` as far as it goes. Returns
   /// true if q is reached.

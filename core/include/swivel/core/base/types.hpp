@@ -5,15 +5,13 @@
 #include <cstdint>
 #include <numbers>
 
+#include "swivel/core/base/config.hpp"
+
 namespace swivel {
 
-/// Joints of the planned arm. Arms of six joints count the tool's roll as the seventh.
-inline constexpr int kDof = 7;
 inline constexpr double kPi = std::numbers::pi;
 inline constexpr double kTwoPi = 2 * std::numbers::pi;
 
-/// Joint positions of the arm, radians, base to tip.
-using Config = Eigen::Matrix<double, kDof, 1>;
 /// A rigid transform, lengths in m; X_AB is the pose of frame B in frame A.
 using Pose = Eigen::Isometry3d;
 using Eigen::Matrix3d;

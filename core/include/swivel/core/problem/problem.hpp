@@ -63,7 +63,7 @@ struct ArmTask : Robot {
 };
 
 /// What a problem file says, with the files that it names loaded: one arm or two in a scene. Poses
-/// are in base_link unless said otherwise. Source: io::load_problem_file.
+/// are in base_link unless said otherwise. Source: io::load_problem().
 ///
 /// Two arms are of one robot model and work at one time: at every waypoint both arms are at theirs,
 /// and between two waypoints both paths are cut into the same number of steps. They have the same
