@@ -817,7 +817,7 @@ class Refused(WithFolder):
                 self.assertRegex(
                     done.stderr, r"^swivel: .*door_job.yaml:[0-9]+: strokes: makes this file a "
                     r"job, which `swivel plan`, `check`, `time`, `campaign`, `place` and "
-                    r"io::load_job\(\) take: allowed is a `path` here\n$"
+                    r"io::load_problem\(\) take: allowed is a `path` here\n$"
                 )
                 self.assertEqual(done.stdout, "")
 

@@ -212,5 +212,7 @@ class ProblemReader {
 [[nodiscard]] std::optional<LiftOffs> lift_offs_of(const YamlSection& root);
 /// Reads the root of a job's file, which has `strokes` or a path. Throws InputError.
 [[nodiscard]] Problem read_job(const std::filesystem::path& file, YamlSection root);
+/// Reads the root of a file with `arms`. Throws InputError.
+[[nodiscard]] Problem read_workcell(const std::filesystem::path& file, YamlSection root);
 
 }  // namespace swivel::io

@@ -153,19 +153,20 @@ void ProblemReader::require_one_path() const {
     const auto [key, value] = *root_.chosen("path");  // throws where there is a path as well
     value.fail(
         "makes this file a job, which `swivel plan`, `check`, `time`, `campaign`, `place` and "
-        "io::load_job() take",
+        "io::load_problem() take",
         "a `path` here");
   }
   if (root_.find_filled("arms")) {
     const auto [key, value] = *root_.chosen("path");  // throws where there is a path as well
     value.fail(
-        "makes this file a workcell, which `swivel plan`, `check` and io::load_workcell() take",
+        "makes this file a workcell, which `swivel plan`, `check`, `time`, `campaign`, `place` and "
+        "io::load_problem() take",
         "a `path` here");
   }
   if (lift_offs_of(root_))
     root_.find_filled("lift")->fail(
         "makes this file a job, which `swivel plan`, `check`, `time`, `campaign`, `place` and "
-        "io::load_job() take",
+        "io::load_problem() take",
         "no `lift` here");
   require_keys_beside();
 }
@@ -788,10 +789,6 @@ void ProblemReader::set(const YamlSection& section, const char* key,
   if (!value->is_sequence()) return target->fill(value->number());
   const std::vector<double> values = joint_numbers(*value);
   std::copy(values.begin(), values.end(), target->begin());
-}
-
-PathProblem load_path_problem(const fs::path& yaml) {
-  return ProblemReader(yaml, load_yaml(yaml, problem_schema()).section()).read();
 }
 
 }  // namespace swivel::io

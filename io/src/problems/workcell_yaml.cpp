@@ -293,19 +293,16 @@ class WorkcellReader : ProblemReader {
 
 }  // namespace
 
+Problem read_workcell(const std::filesystem::path& file, YamlSection root) {
+  return WorkcellReader(file, std::move(root)).read();
+}
+
 Problem load_workcell(const std::filesystem::path& yaml) {
   YamlSection root = load_yaml(yaml, problem_schema()).section();
   static_cast<void>(root.chosen("path"));
   if (!root.find_filled("arms"))
     root.self().fail("has no `arms`", "a file with `arms`; io::load_problem() takes any");
-  return WorkcellReader(yaml, std::move(root)).read();
-}
-
-Problem load_problem(const std::filesystem::path& yaml) {
-  YamlSection root = load_yaml(yaml, problem_schema()).section();
-  if (root.find_filled("arms")) return WorkcellReader(yaml, std::move(root)).read();
-  if (root.find_filled("strokes") || lift_offs_of(root)) return read_job(yaml, std::move(root));
-  return one_path(ProblemReader(yaml, std::move(root)).read());
+  return read_workcell(yaml, std::move(root));
 }
 
 }  // namespace swivel::io
