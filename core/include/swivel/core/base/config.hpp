@@ -57,8 +57,8 @@ class Config : public Eigen::Matrix<double, kMaxDof, 1> {
   void coordinates() && = delete;  // it refers to the entries of this configuration
 };
 
-/// Returns the sum of the arm's coordinates in `v`, a vector as long as a Config. Sums leave out the
-/// entries behind them, which are zero, so that they have the bits of sums of kDof numbers.
+/// Returns the sum of the arm's coordinates in `v`, a vector as long as a Config. It leaves out the
+/// entries behind them, which are zero, so that it has the bits of a sum of kDof numbers.
 template <typename Vector>
 EIGEN_ALWAYS_INLINE double joint_sum(const Eigen::MatrixBase<Vector>& v) {
   static_assert(Vector::SizeAtCompileTime == kMaxDof);
