@@ -87,4 +87,5 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/io/robots/robot.hpp
   swivel/io/tables/campaign.hpp
   swivel/report/lattice_map.hpp
-  swivel/report/page.hpp)
+  swivel/report/page.hpp
+  swivel/report/run_map.hpp)

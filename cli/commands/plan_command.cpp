@@ -72,10 +72,10 @@ struct PlanRequest {
 /// What was found.
 struct PlanFindings {
   Answer answer{};
-  std::optional<AdviceList> advice{};      ///< with --advise, where there is no answer
+  std::optional<AdviceList> advice{};     ///< with --advise, where there is no answer
   std::optional<AnyCertificate> proof{};  ///< with --certificate, where there is no answer
   std::string certificate{};              ///< `proof` as JSON
-  std::optional<LatticeMap> map{};        ///< of one path; unset if nothing is drawn
+  std::vector<RunMap> maps{};             ///< of all runs; none if nothing is drawn
   std::optional<std::string> page{};      ///< HTML of --report
 
   [[nodiscard]] bool infeasible() const { return answer.status == PlanStatus::kInfeasible; }
@@ -98,17 +98,13 @@ PlanRequest load_file(const PlanArguments& arguments) {
   return request;
 }
 
-/// Throws InputError for options that are of problems with one path alone.
+/// Throws InputError for options that strokes do not have, and for planners of one path alone.
 void require_options_of(const PlanArguments& arguments, const Problem& problem) {
   if (is_path(problem)) return;
   const bool two_arms = problem.arms.size() == 2;
   refuse_options(problem, arguments.problem,
                  {{!two_arms && arguments.refine, "--refine"},
-                  {!two_arms && arguments.motion.chord.has_value(), "--chord"},
-                  {!arguments.trace.empty(), "--trace"},
-                  {arguments.map, "--map"},
-                  {!arguments.map_svg.empty(), "--map-svg"},
-                  {arguments.full_map, "--full-map"}});
+                  {!two_arms && arguments.motion.chord.has_value(), "--chord"}});
   require_planner_of(problem, arguments.search);
 }
 
@@ -229,12 +225,12 @@ std::string page_of(const ProblemPlanner& planner, const PlanRequest& request,
   const PageWords words{request.arguments.episode.words(),
                         whole_text(answer, problem, found.advice ? &*found.advice : nullptr),
                         visual.model.get(), visual.left_out};
-  return to_page(planner, answer, io::to_json(answer, problem, extras_of(found)),
-                 found.map ? &*found.map : nullptr, budget, words);
+  return to_page(planner, answer, io::to_json(answer, problem, extras_of(found)), found.maps,
+                 budget, words);
 }
 
-/// Makes the lattice map and the page, if they are asked for and the plan has a verdict. Adds a
-/// warning if the budget ends first; there is then neither map nor page.
+/// Makes the lattice maps and the page, if they are asked for and the plan has a verdict. Adds a
+/// warning if the budget ends first; there are then neither maps nor page.
 void draw(const ProblemPlanner& planner, const PlanRequest& request, const Budget& budget,
           PlanFindings& found) {
   const PlanArguments& arguments = request.arguments;
@@ -243,14 +239,14 @@ void draw(const ProblemPlanner& planner, const PlanRequest& request, const Budge
   if (!arguments.draws() || !decided) return;
   if (problem.arms.size() == 2 && planner.view().runs.empty()) return;
   try {
-    if (is_path(problem))
-      found.map = make_map(planner.view().runs.front(), arguments.full_map, budget);
+    found.maps = make_maps(planner.view(), found.answer, executed_problem(problem, found.answer),
+                           arguments.full_map, budget);
     if (!arguments.report.empty()) found.page = page_of(planner, request, found, budget);
   } catch (const Stopped&) {
-    found.map.reset();
+    found.maps.clear();
     found.answer.warnings.push_back(
         is_path(problem) ? "stopped before the map was drawn: there is none, and no report"
-                         : "stopped before the page was made: there is no report");
+                         : "stopped before the maps were drawn: there are none, and no report");
   }
 }
 
@@ -281,7 +277,7 @@ void write_answer(const Problem& executed, const std::optional<Timeline>& timeli
   write_or_remove("--certificate", found.proof.has_value(),
                   [&] { return std::move(found.certificate); });
   write_or_remove("--report", found.page.has_value(), [&] { return *std::move(found.page); });
-  write_or_remove("--map-svg", found.map.has_value(), [&] { return to_svg(*found.map); });
+  write_or_remove("--map-svg", !found.maps.empty(), [&] { return to_svg(found.maps); });
   if (timeline) outputs.write("--trace", io::to_trace_json(*timeline) + "\n");
 }
 
@@ -336,8 +332,8 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
     if (!arguments.quiet && !outputs->takes_standard_output())
       print_answer(answer, executed, found.advice, found.proof, bytes);
     if (!arguments.quiet && timeline) print_self_times(*timeline);
-    if (found.map && arguments.map)
-      std::fputs(to_text(*found.map, terminal_columns(), coloured()).c_str(), stdout);
+    if (arguments.map)
+      std::fputs(to_text(found.maps, terminal_columns(), coloured()).c_str(), stdout);
   });
   return exit_code_of(answer);
 }
@@ -429,8 +425,9 @@ void add_plan(CLI::App& app, int& exit_code) {
                       "event format; prints how long each "
                       "stage took itself");
   command->add_flag("--map", arguments->map,
-                    "print the (s, phi) map: what the search looked at, and the path");
-  command->add_option("--map-svg", arguments->map_svg, "the same map as an SVG drawing");
+                    "print the (s, phi) map, of each stroke or arm: what the search looked at, and "
+                    "the path");
+  command->add_option("--map-svg", arguments->map_svg, "the same maps as an SVG drawing");
   command->add_option("--report", arguments->report,
                       "the plan as one HTML file: playback, maps, plots, summary");
   command->add_flag("--full-map", arguments->full_map,

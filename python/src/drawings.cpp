@@ -43,9 +43,9 @@ void require_drawable(const Answer& answer) {
         "alone");
 }
 
-/// Plans again what an answer is of, and draws it: the map of one path as SVG, and with `with_page`
-/// the page. `full`: the clearance of every node is asked. Throws ValueError for answers without a
-/// verdict, and if another answer is found.
+/// Plans again what an answer is of, and draws it: the maps of its runs as SVG, and with
+/// `with_page` the page. `full`: the clearance of every node is asked. Throws ValueError for
+/// answers without a verdict, and if another answer is found.
 std::pair<std::string, std::string> draw(const Answer& answer, const Problem* given, bool with_page,
                                          bool full) {
   if (with_page) require_pages();
@@ -65,16 +65,15 @@ std::pair<std::string, std::string> draw(const Answer& answer, const Problem* gi
     const swivel::Answer again = planner.plan(options, true);
     if (!same_parts(again, *answer.found))
       throw py::value_error("problem: has another answer than this one: allowed is its own");
-    std::optional<LatticeMap> map;
-    if (is_path(problem)) map = make_map(planner.view().runs.front(), full, budget);
-    std::pair<std::string, std::string> drawn;
-    if (map) drawn.first = to_svg(*map);
-    if (!with_page) return drawn;
     const swivel::Problem executed = executed_problem(planner.problem(), again);
+    if (planner.view().runs.empty() && (!with_page || executed.arms.size() == 2))
+      throw py::value_error("the answer has nothing to draw: no lattice was searched");
+    const std::vector<RunMap> maps = make_maps(planner.view(), again, executed, full, budget);
+    std::pair<std::string, std::string> drawn{maps.empty() ? "" : to_svg(maps), ""};
+    if (!with_page) return drawn;
     const io::VisualRobot visual = io::load_visuals(*problem.arm().model);
-    drawn.second =
-        to_page(planner, again, io::to_json(again, executed), map ? &*map : nullptr, budget,
-                {"", whole_text(again, executed), visual.model.get(), visual.left_out});
+    drawn.second = to_page(planner, again, io::to_json(again, executed), maps, budget,
+                           {"", whole_text(again, executed), visual.model.get(), visual.left_out});
     return drawn;
   });
 }
@@ -91,7 +90,7 @@ void require_pages() {
 void bind_drawings(py::module_& m) {
   m.def("_page_available", &page_available);
   m.def("_draw", &draw, py::arg("answer"), py::arg("problem"), py::arg("page"), py::arg("full"),
-        "(map of one path as SVG or '', page as HTML or '') of an answer.");
+        "(maps of the runs as SVG, page as HTML or '') of an answer.");
 }
 
 }  // namespace swivel::python

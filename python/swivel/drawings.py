@@ -58,17 +58,15 @@ def map_svg(
     problem: Problem | _File | None, answer: Answer, file: _File | None = None, *,
     full: bool = False
 ) -> str | Any:
-    """Draws the lattice map of an answer as SVG: what `swivel plan --map-svg` writes.
+    """Draws the lattice maps of an answer as SVG: what `swivel plan --map-svg` writes.
 
-    problem, answer, file: as for report(), of one path. full: ask the clearance of every node, not
+    One map of one path, one below the other of strokes and of two arms, each below its name.
+    problem, answer, file: as for report(). full: ask the clearance of every node, not
     only of those that the search asked about.
 
     Returns the SVG as text, or None where it was written. Raises as report() does.
     """
-    drawn = _swivel._draw(answer, _given(problem), False, full)[0]
-    if not drawn:
-        raise ValueError("map_svg: of one path: allowed are answers without strokes, of one arm")
-    return _written(drawn, file)
+    return _written(_swivel._draw(answer, _given(problem), False, full)[0], file)
 
 
 def certificate(
@@ -138,7 +136,7 @@ def _report(self, file: _File | None = None) -> str | Any:
 
 
 def _map_svg(self, file: _File | None = None, *, full: bool = False) -> str | Any:
-    """Draws the lattice map of the answer as SVG. See swivel.map_svg()."""
+    """Draws the lattice maps of the answer as SVG. See swivel.map_svg()."""
     return map_svg(None, self, file, full=full)
 
 
@@ -170,8 +168,8 @@ def _html(self):
         return answer
     data = base64.b64encode(image.encode()).decode()
     drawn = (
-        '<img alt="Lattice map" style="max-width:100%;max-height:36em" '
-        f'src="data:image/svg+xml;base64,{data}"/>' if image else ""
+        '<div style="max-height:36em;overflow:auto"><img alt="Lattice maps" '
+        f'style="max-width:100%" src="data:image/svg+xml;base64,{data}"/></div>' if image else ""
     )
     if not page:
         return answer + drawn

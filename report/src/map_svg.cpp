@@ -7,6 +7,7 @@
 #include "map_cells.hpp"
 #include "outline.hpp"
 #include "swivel/core/base/angle.hpp"
+#include "swivel/report/run_map.hpp"
 
 namespace swivel {
 
@@ -55,20 +56,35 @@ std::vector<std::pair<double, std::string>> marks_along(const std::vector<double
   return marks;
 }
 
-/// Draws a lattice map from top to bottom: a panel per inhabited IK solution, then the legend.
+/// Draws a lattice map from top to bottom: its name if it has one, a panel per inhabited IK
+/// solution, then the legend.
 class MapDrawing {
- public:
-  explicit MapDrawing(const LatticeMap& map)
-      : map_(map), cells_(map, 620, 252), solutions_(map.inhabited_solutions()), seen_(map) {}
+  static constexpr double kLeft = 52, kPanelWidth = 620, kPanelHeight = 190, kTop = 24, kGap = 52,
+                          kRight = 24;
 
-  /// Returns the SVG document.
-  std::string document() {
-    const double height_of_legend = 18.0 * static_cast<double>(5 + kDof + map_.blockers.size());
-    const double width = kLeft + kPanelWidth + kRight;
-    drawing_.rectangle(
-        0, 0, width,
-        kTop + static_cast<double>(solutions_.size()) * (kPanelHeight + kGap) + height_of_legend,
-        "#ffffff");
+ public:
+  static constexpr double kWidth = kLeft + kPanelWidth + kRight;
+
+  /// Draws into `drawing`, from `top` on.
+  MapDrawing(const LatticeMap& map, Drawing& drawing, double top)
+      : map_(map),
+        cells_(map, 620, 252),
+        solutions_(map.inhabited_solutions()),
+        seen_(map),
+        drawing_(drawing),
+        top_(top) {}
+
+  /// Draws the map. Returns where it ends.
+  double draw(const std::string& name = "") {
+    const double height_of_name = name.empty() ? 0 : 30,
+                 height_of_legend = 18.0 * static_cast<double>(5 + kDof + map_.blockers.size());
+    drawing_.rectangle(0, top_, kWidth,
+                       height_of_name + kTop +
+                           static_cast<double>(solutions_.size()) * (kPanelHeight + kGap) +
+                           height_of_legend,
+                       "#ffffff");
+    if (!name.empty()) drawing_.text(kLeft, top_ + 22, "start", name);
+    top_ += height_of_name + kTop;
     for (const int solution : solutions_) {
       const std::vector<LatticeMap::Node> nodes = nodes_of(solution);
       draw_cells(nodes);
@@ -78,13 +94,10 @@ class MapDrawing {
       top_ += kPanelHeight + kGap;
     }
     draw_legend();
-    return drawing_.document(width, top_);
+    return top_;
   }
 
  private:
-  static constexpr double kLeft = 52, kPanelWidth = 620, kPanelHeight = 190, kTop = 24, kGap = 52,
-                          kRight = 24;
-
   /// A node stands for the stretch halfway to its neighbours, so the first and last layer are half
   /// as wide.
   [[nodiscard]] double x_of(double layer) const {
@@ -267,14 +280,23 @@ class MapDrawing {
   const MapCells cells_;
   const std::vector<int> solutions_;  ///< whose panels are drawn
   MapLegend seen_;
-  Drawing drawing_;
-  double top_ = kTop;  ///< upper edge of what is drawn next
+  Drawing& drawing_;
+  double top_;  ///< upper edge of what is drawn next
 };
 
 }  // namespace
 
 std::string to_svg(const LatticeMap& map) {
-  return MapDrawing(map).document();
+  Drawing drawing;
+  const double end = MapDrawing(map, drawing, 0).draw();
+  return drawing.document(MapDrawing::kWidth, end);
+}
+
+std::string to_svg(std::span<const RunMap> maps) {
+  Drawing drawing;
+  double end = 0;
+  for (const RunMap& of : maps) end = MapDrawing(of.map, drawing, end).draw(of.name);
+  return drawing.document(MapDrawing::kWidth, end);
 }
 
 }  // namespace swivel

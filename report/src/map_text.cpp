@@ -4,6 +4,7 @@
 #include "map_cells.hpp"
 #include "swivel/core/messages/bounds.hpp"
 #include "swivel/core/messages/formatted.hpp"
+#include "swivel/report/run_map.hpp"
 
 namespace swivel {
 
@@ -73,7 +74,9 @@ std::string to_text(const LatticeMap& map, int columns, bool coloured) {
       }
       text += '\n';
     }
-    text += std::string(kMargin, ' ') + formatted("s = 0 to %.3f m", map.s.back()) + "\n\n";
+    const std::string from = map.s.front() > 0 ? formatted("%.3f", map.s.front()) : "0";
+    text +=
+        std::string(kMargin, ' ') + "s = " + from + formatted(" to %.3f m", map.s.back()) + "\n\n";
   }
   if (!map.path.empty()) text += symbols.path() + " " + seen.path_meaning() + "\n";
   for (const auto& [node, meaning] : seen.entries())
@@ -93,6 +96,15 @@ std::string to_text(const LatticeMap& map, int columns, bool coloured) {
             " arm angles and shows a blocked node before a free one, and that before the others.\n";
   else
     text += rows + "\n";
+  return text;
+}
+
+std::string to_text(std::span<const RunMap> maps, int columns, bool coloured) {
+  std::string text;
+  for (const RunMap& of : maps) {
+    if (!of.name.empty()) text += (text.empty() ? "" : "\n") + printable(of.name) + "\n\n";
+    text += to_text(of.map, columns, coloured);
+  }
   return text;
 }
 

@@ -13,6 +13,7 @@ import subprocess
 import tempfile
 import time
 import unittest
+import xml.etree.ElementTree
 
 from job_test import one_job
 from workcell_test import cell
@@ -44,14 +45,6 @@ BESIDE = {
 REFUSED = {
     ("job", "--refine"): "jobs are timed, not refined",
     ("job", "--chord"): "its strokes have feeds",
-    ("job", "--trace"): "of one plan",
-    ("job", "--map"): "of one path",
-    ("job", "--map-svg"): "of one path",
-    ("job", "--full-map"): "of one path",
-    ("two arms", "--trace"): "of one plan",
-    ("two arms", "--map"): "of one path",
-    ("two arms", "--map-svg"): "of one path",
-    ("two arms", "--full-map"): "of one path",
 }
 # Outputs: where there is a plan, where there is none, where it was stopped.
 WRITTEN = {
@@ -167,6 +160,34 @@ class Twins(unittest.TestCase):
         self.assertEqual(file.exists(), is_written)
         if is_written:
             self.assertNotIn("of an earlier run", file.read_text())
+
+    def test_maps_and_traces_of_kinds(self):
+        """Each run has a map below its name, in text and SVG; the trace has the stages."""
+        names = {
+            "path": [],
+            "job": ["stroke 'left'", "stroke 'right'"],
+            "two arms": ["arm 'left'", "arm 'right'"]
+        }
+        stages = {"path": "plan", "job": "plan job", "two arms": "plan workcell"}
+        trace, drawing = self.folder / "trace.json", self.folder / "map.svg"
+        for kind, has_plan in itertools.product(KINDS, (True, False)):
+            with self.subTest(kind=kind, has_plan=has_plan):
+                command = ("plan", self.files[kind, has_plan], "--map", "--map-svg", drawing)
+                done = run(*command, "--trace", trace)
+                self.assertEqual(done.returncode, 0 if has_plan else 1, done.stderr)
+                headings = [line for line in done.stdout.splitlines() if line in names[kind]]
+                self.assertEqual(headings, names[kind])
+                root = xml.etree.ElementTree.parse(drawing).getroot()
+                texts = [text.text for text in root.iter("{http://www.w3.org/2000/svg}text")]
+                self.assertEqual([text for text in texts if text in names[kind]], names[kind])
+                paths = sum(text.startswith("the path; ") for text in texts)
+                if has_plan:
+                    self.assertEqual(paths, max(1, len(names[kind])), texts)
+                spans = {event["name"] for event in json.loads(trace.read_text())["traceEvents"]}
+                self.assertIn(stages[kind], spans)
+                full = run(*command, "--full-map")
+                self.assertNotIn("not looked at", full.stdout)
+                self.assertNotEqual(full.stdout, done.stdout)
 
     def test_outputs_of_kinds_that_time_or_a_signal_ends(self):
         ends = {"time-out": ("--timeout", "0.3"), "Ctrl-C": ()}

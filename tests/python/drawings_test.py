@@ -27,6 +27,8 @@ CASES = [
     ("experiment_c", [], {}),
     ("ur5e_deburr_edge", [], {}),
     ("experiment_a_start", [], {}),  # no path
+    ("kr6_weld_pipe_job", [], {}),
+    ("iiwa14_fillet_workcell", [], {}),
     ("experiment_c", ["--refine", "--speed", "0.1"], {"refine": True, "speed": 0.1}),
 ]
 

@@ -6,24 +6,23 @@
 namespace swivel {
 
 std::string to_page(const ProblemPlanner& planner, const Answer& answer,
-                    const std::string& result_json, const LatticeMap* map, const Budget& budget,
-                    const PageWords& words) {
+                    const std::string& result_json, std::span<const RunMap> maps,
+                    const Budget& budget, const PageWords& words) {
   const ProblemView& view = planner.view();
   const Problem problem = executed_problem(planner.problem(), answer);
   const Motion* const motion = answer.timed();
+  std::vector<RunMap> made;
+  if (maps.empty()) maps = made = make_maps(view, answer, problem, false, budget);
   if (problem.arms.size() == 2)
-    return to_workcell_page({planner.two_arms(), problem, answer, view, motion}, result_json,
+    return to_workcell_page({planner.two_arms(), problem, answer, view, maps, motion}, result_json,
                             budget, words);
   const ArmMotion* const of_arm = motion != nullptr ? &motion->arms.front() : nullptr;
   if (!is_path(problem))
-    return to_job_page({planner.robot(), problem, answer, view, of_arm}, result_json, budget,
+    return to_job_page({planner.robot(), problem, answer, view, maps, of_arm}, result_json, budget,
                        words);
   const PageMotion shown{.refined = answer.refined ? &answer.arm().rows() : nullptr,
                          .motion = of_arm};
-  const PlanView& run = view.runs.front();
-  return map != nullptr
-             ? to_page(run, *map, result_json, shown, budget, words)
-             : to_page(run, make_map(run, false, budget), result_json, shown, budget, words);
+  return to_page(view.runs.front(), maps.front().map, result_json, shown, budget, words);
 }
 
 }  // namespace swivel

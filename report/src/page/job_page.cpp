@@ -24,6 +24,7 @@ class JobPage {
       : job_(planned.job),
         result_(planned.result),
         runs_(planned.view.runs),
+        run_maps_(planned.maps),
         motion_(planned.motion),
         robot_(planned.robot),
         chain_(planned.robot.arm().chain),
@@ -99,11 +100,10 @@ class JobPage {
     const PlanView& view = runs_[k];
     const Lattice& lattice = view.lattice;
     const auto part = part_of(k);
-    LatticeMap map = make_map(view, false, budget_);
+    const LatticeMap& map = run_maps_[k].map;
     const std::vector<PageRow> path = placed(lattice, map, rows_of(lattice, view.path), view.path);
     std::vector<PageRow> rows = part ? placed_part(*part, view, map) : path;
     json["beside"] = motion_ && part ? beside_json(path, rows) : Json::array();
-    for (double& s : map.s) s += begin;
     for (PageRow& row : rows) row.at.s += begin;
     json["run"] = json_["runs"][k];
     json["settings"] = settings_json(view.problem, lattice);
@@ -202,6 +202,7 @@ class JobPage {
   const Problem& job_;
   const Answer& result_;
   const std::vector<PlanView>& runs_;
+  std::span<const RunMap> run_maps_;
   const ArmMotion* motion_;
   const PreparedRobot& robot_;
   const Chain& chain_;

@@ -15,6 +15,7 @@ struct PlannedJob {
   const Problem& job;
   const Answer& result;
   const ProblemView& view;
+  std::span<const RunMap> maps;       ///< those of make_maps() of the view
   const ArmMotion* motion = nullptr;  ///< null where the job was not timed or has no motion
 };
 

@@ -120,7 +120,7 @@ class WorkcellPage {
     const Lattice& lattice = of.lattice;
     const ArmAnswer& of_arm = result_.arms[k];
     const std::vector<TrajectoryRow>& answer = of_arm.rows();
-    const LatticeMap map = make_map(of, false, budget_);
+    const LatticeMap& map = planned_.maps[k].map;
     std::vector<TrajectoryRow> path = answer.empty() ? rows_of(lattice, of.path) : answer;
     Json moved = motion(k, path);
     const std::vector<PageRow> rows = placed(lattice, map, path, of.path);

@@ -16,6 +16,7 @@ struct PlannedWorkcell {
   const Problem& cell;
   const Answer& result;
   const ProblemView& view;
+  std::span<const RunMap> maps;    ///< those of make_maps() of the view
   const Motion* motion = nullptr;  ///< of the result's trajectories; null if there is none
 };
 

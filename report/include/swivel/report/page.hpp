@@ -6,7 +6,7 @@
 #include "swivel/core/answer/timed_path.hpp"
 #include "swivel/core/problem/robot_model.hpp"
 #include "swivel/planner/problem/problem_planner.hpp"
-#include "swivel/report/lattice_map.hpp"
+#include "swivel/report/run_map.hpp"
 
 namespace swivel {
 
@@ -44,11 +44,11 @@ struct PageWords {
 /// one HTML file that needs nothing else, with one path as above; with strokes and transitions in
 /// the order in which they are executed; or with both arms, moved together, and where these meet if
 /// each has a path by itself and both together have none. `result_json`: the result in the format
-/// of `--json`. `map`: of one path; null: it is made. The file is made after planning: clearances
-/// along the rows are asked for again. page_available() says whether this build can make it. Throws
-/// Stopped.
+/// of `--json`. `maps` are those of make_maps(); where there are none, they are made. The file is
+/// made after planning: clearances along the rows are asked for again. page_available() says
+/// whether this build can make it. Throws Stopped.
 [[nodiscard]] std::string to_page(const ProblemPlanner& planner, const Answer& answer,
-                                  const std::string& result_json, const LatticeMap* map = nullptr,
+                                  const std::string& result_json, std::span<const RunMap> maps = {},
                                   const Budget& budget = {}, const PageWords& words = {});
 
 }  // namespace swivel
