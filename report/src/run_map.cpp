@@ -9,9 +9,7 @@ namespace {
 std::string name_of(const Answer& answer, const Problem& executed, std::size_t run) {
   if (is_path(executed)) return "";
   if (executed.arms.size() == 2) return "arm '" + answer.arms[run].name + "'";
-  const StrokeRun& of = answer.arm().runs[run].run;
-  return "stroke '" + executed.arm().strokes[of.stroke].name + "'" +
-         (of.reversed ? ", backwards" : "");
+  return "stroke " + words(answer.arm().runs[run].run, executed);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace swivel {
 
 /// The lattice map of one run of an answer: of the one path, of a stroke, or of one of two arms.
 struct RunMap {
-  std::string name;  ///< "stroke 'seam', backwards", "arm 'left'"; "" of the one path
+  std::string name;  ///< "stroke 'seam' backwards", "arm 'left'"; "" of the one path
   /// Its `s` counts along the whole stroke, where lift-offs part that.
   LatticeMap map;
 };
