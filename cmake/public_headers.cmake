@@ -51,6 +51,7 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/planner/job/complete_job.hpp
   swivel/planner/plan/problem_view.hpp
   swivel/planner/job/plan_job.hpp
+  swivel/planner/job/refine_job.hpp
   swivel/planner/job/time_job.hpp
   swivel/planner/plan/path_range.hpp
   swivel/planner/plan/plan_options.hpp

@@ -98,16 +98,6 @@ PlanRequest load_file(const PlanArguments& arguments) {
   return request;
 }
 
-/// Throws InputError for options that strokes do not have, and for planners of one path alone.
-void require_options_of(const PlanArguments& arguments, const Problem& problem) {
-  if (is_path(problem)) return;
-  const bool two_arms = problem.arms.size() == 2;
-  refuse_options(problem, arguments.problem,
-                 {{!two_arms && arguments.refine, "--refine"},
-                  {!two_arms && arguments.motion.chord.has_value(), "--chord"}});
-  require_planner_of(problem, arguments.search);
-}
-
 /// Reads from the command line whether the answer is refined and timed. Throws InputError if --out
 /// names a format that does not fit, or if a stroke has no speed.
 void read_motion(PlanRequest& request) {
@@ -155,7 +145,7 @@ void require_options_agree(const PlanRequest& request) {
                       : path   ? "problem"
                                : "job") +
                      " as its file has it: allowed without " +
-                     (two_arms || path ? "--refine and --speed" : "--speed and --rate") +
+                     (two_arms || path ? "--refine and --speed" : "--refine, --speed and --rate") +
                      ", which ask for more");
 }
 
@@ -303,7 +293,6 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
   std::optional<Timeline> timeline;
   if (!arguments.trace.empty()) timeline.emplace();
   PlanRequest request = load_file(arguments);
-  require_options_of(arguments, request.problem);
   request.problem = chosen_problem(request.problem, arguments.search, arguments.episode);
   read_motion(request);
   require_options_agree(request);

@@ -28,18 +28,16 @@ struct TimeArguments {
   bool quiet = false, refine = false, no_check = false;
 };
 
-/// Returns how the command line asks for a motion of the problem. Throws InputError for what is not
-/// supported of it, and where there is no speed.
+/// Returns how the command line asks for a motion of the problem. Throws InputError where there is
+/// no speed.
 MotionRequest request_of(const TimeArguments& arguments, const Problem& problem) {
   const bool strokes = problem.arms.size() == 1 && !is_path(problem);
   if (!strokes)
     return {.refine = arguments.refine,
             .timing = arguments.motion.timing(limits_of_speeds(problem))};
-  refuse_options(problem, problem.source,
-                 {{arguments.refine, "--refine"}, {arguments.motion.chord.has_value(), "--chord"}});
   const TimingOptions timing = arguments.motion.timing_of_strokes();
   require_speeds(problem, timing);
-  return {.timing = timing};
+  return {.refine = arguments.refine, .timing = timing};
 }
 
 int run(const TimeArguments& arguments) {

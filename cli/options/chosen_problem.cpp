@@ -9,15 +9,6 @@
 
 namespace swivel::cli {
 
-namespace {
-
-/// Returns what the guide calls such problems.
-std::string words_of_kind(const Problem& problem) {
-  return problem.arms.size() == 2 ? "workcells" : "jobs";
-}
-
-}  // namespace
-
 Problem chosen_problem(const Problem& problem, const LatticeOptions& lattice,
                        const EpisodeChoice& episode) {
   Problem chosen = episode.apply(problem);
@@ -36,26 +27,9 @@ ChosenProblem load_chosen(const std::string& file, const SearchOptions& search,
   const io::InputFiles noted(contents);
   const Problem loaded = io::load_problem(file);
   ChosenProblem chosen{.inputs = noted.files()};
-  require_planner_of(loaded, search);
   chosen.problem = chosen_problem(loaded, search, {});
   chosen.first = first_path(chosen.problem);
   return chosen;
-}
-
-void refuse_options(const Problem& problem, const std::string& file,
-                    const std::vector<std::pair<bool, const char*>>& options) {
-  for (const auto& [given, name] : options)
-    if (given)
-      throw InputError(std::string(name) + ": is not supported yet for " + words_of_kind(problem) +
-                       ", as " + file + " is one: allowed are problems with one path");
-}
-
-void require_planner_of(const Problem& problem, const SearchOptions& search) {
-  if (is_path(problem)) return;
-  const PlannerKind planner = search.plan_options().planner;
-  if (planner == PlannerKind::kEager || planner == PlannerKind::kEagerDp)
-    throw InputError("--planner: " + search.planner + " is not supported for " +
-                     words_of_kind(problem) + ": allowed are lazy, parallel");
 }
 
 PathProblem problem_of_arm(const Problem& problem, std::size_t arm) {

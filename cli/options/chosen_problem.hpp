@@ -24,17 +24,9 @@ struct ChosenProblem {
 };
 /// Loads a problem file, and chooses its lattice as the command line does. `contents`: whether the
 /// files that are read are noted with hashes, because results say what they were computed from.
-/// Throws InputError, also for a planner that does not plan such problems.
+/// Throws InputError.
 [[nodiscard]] ChosenProblem load_chosen(const std::string& file, const SearchOptions& search,
                                         io::InputFiles::Contents contents);
-
-/// Throws InputError for the first of these options, by name, that is given (true): only problems
-/// with one path take them. `file` names the problem in the message.
-void refuse_options(const Problem& problem, const std::string& file,
-                    const std::vector<std::pair<bool, const char*>>& options);
-
-/// Throws InputError for a planner that does not plan such problems.
-void require_planner_of(const Problem& problem, const SearchOptions& search);
 
 /// Returns the task and the scene that an arm of two has, as a problem for records and messages:
 /// its path may be on the tool of the other arm, so that it cannot be planned.

@@ -45,7 +45,6 @@ struct SearchOptions : LatticeOptions {
 /// Returns the shortest digits that read back as the same number.
 [[nodiscard]] std::string shortest(double value);
 
-
 /// Returns a word quoted so that a POSIX shell reads it back.
 [[nodiscard]] std::string quoted(const std::string& word);
 

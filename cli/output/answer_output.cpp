@@ -52,8 +52,8 @@ std::string work_of_path(const Answer& answer) {
 std::string work_of_strokes(const Answer& answer) {
   const Counters& c = answer.arm().counters;
   return planner_text(answer) +
-         stages_text(answer, {"load", "lattice", "find", "order", "lift", "report", "check", "time",
-                              "check motion"}) +
+         stages_text(answer, {"load", "lattice", "find", "order", "lift", "refine", "report",
+                              "check", "time", "check motion"}) +
          formatted("; %lld nodes and %lld edges checked, %lld FCL calls\n",
                    static_cast<long long>(c.nodes_checked), static_cast<long long>(c.edges_checked),
                    static_cast<long long>(c.fcl_calls));
@@ -108,7 +108,7 @@ void print_answer(const Answer& answer, const Problem& problem,
   } else if (!is_path(problem)) {
     say_text(whole_text(answer, problem) + work_of_strokes(answer));
   } else {
-    say_text(answer_text(answer, problem) + work_of_path(answer) + refined_text(answer) +
+    say_text(answer_text(answer, problem) + work_of_path(answer) + refined_text(answer, problem) +
              timed_text(answer, problem));
   }
   warn(answer);
@@ -117,7 +117,7 @@ void print_answer(const Answer& answer, const Problem& problem,
 }
 
 void print_timed(const Answer& answer, const Problem& problem, bool quiet) {
-  if (!quiet) say_text(refined_text(answer));
+  if (!quiet) say_text(refined_text(answer, problem));
   say_text(timed_text(answer, problem, true));
   if (answer.timed() != nullptr) warn_of(*answer.timed());
 }

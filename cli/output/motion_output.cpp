@@ -40,11 +40,10 @@ TimingOptions MotionOptions::timing(const Limits& limits) const {
 }
 
 TimingOptions MotionOptions::timing_of_strokes() const {
-  if (chord)
-    throw InputError("--chord: is not supported yet for jobs: allowed are problems with one path");
   TimingOptions options;
   if (speed) options.speed = positive(*speed, "--speed");
   if (turn_speed) options.turn_speed = positive(*turn_speed, "--turn-speed");
+  if (chord) options.chord = positive(*chord, "--chord");
   options.rate = checked_rate();
   return options;
 }

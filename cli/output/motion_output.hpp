@@ -24,11 +24,10 @@ struct MotionOptions {
   /// given. Throws InputError if there is no speed.
   [[nodiscard]] TimingOptions timing(const Limits& limits) const;
   /// Returns the timing of strokes that the options ask for: with speed 0, for which strokes have
-  /// that of the problem file, without --speed. Throws InputError for --chord, which is of problems
-  /// with one path.
+  /// that of the problem file, without --speed. Throws InputError.
   [[nodiscard]] TimingOptions timing_of_strokes() const;
-  /// Returns true if a motion of a job is asked for, by --speed, --turn-speed or --rate.
-  [[nodiscard]] bool ask_for_job_motion() const { return speed || turn_speed || rate; }
+  /// Returns true if a motion of a job is asked for, by --speed, --turn-speed, --rate or --chord.
+  [[nodiscard]] bool ask_for_job_motion() const { return speed || turn_speed || rate || chord; }
 
  private:
   /// Returns --rate, or its default. Throws InputError.

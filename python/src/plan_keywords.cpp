@@ -189,7 +189,7 @@ TimingOptions MotionKeywords::timing(const swivel::Problem& problem) const {
 
 std::optional<TimingOptions> MotionKeywords::asked_timing(const swivel::Problem& problem) const {
   const bool strokes = problem.arms.size() == 1 && !is_path(problem);
-  if (speed || (strokes && (turn_speed || rate))) return timing(problem);
+  if (speed || (strokes && (turn_speed || rate || chord))) return timing(problem);
   for (const auto& [given, name] :
        {std::pair(turn_speed, "turn_speed"), std::pair(rate, "rate"), std::pair(chord, "chord")})
     if (given) throw py::value_error(std::string(name) + ": is of motions: allowed with speed");

@@ -161,18 +161,18 @@ def plan(
     """Plans one problem, once.
 
     problem: a Problem, or the name of its file. The others are those of Planner.plan(); check,
-    check_motions, cost and chord are of one path, refine is not of strokes. Planners are 'parallel'
-    and 'lazy' for strokes and two arms. With speed, turn_speed or rate strokes have a motion in
-    time; speed holds instead of their speeds and feeds. Two arms have one with speed, that of the
-    faster tool (a follower's on its leader's), by one clock.
+    check_motions and cost are not of two arms; of strokes check is also asked about states along
+    transitions, at most 0.05 rad (or m) of a joint apart, and cost about rows of runs. With speed,
+    turn_speed, rate or chord strokes have a motion in time; speed holds instead of their speeds and
+    feeds. Two arms have one with speed, that of the faster tool (a follower's on its leader's), by
+    one clock.
 
     Returns an Answer; no answer is one, not an exception. Raises InputError and InvalidArgument for
     a problem that makes no sense, and what a function raised.
     """
     problem = _loaded(problem)
     own = dict(check=check, check_motions=check_motions, cost=cost)
-    _refuse(problem, ("one path",), **own, chord=chord)
-    _refuse(problem, ("one path", "two arms"), refine=refine)
+    _refuse(problem, ("one path", "strokes"), **own)
     return _swivel._plan(
         problem, planner, threads, timeout, prove, evidence, *own.values(), progress, refine,
         speed, turn_speed, rate, chord
@@ -241,15 +241,14 @@ def time(
 
     problem: a Problem, or the name of its file. rows: as of check(); the times of a motion are left
     aside. speed: m/s of the tool; without it those of the problem's strokes and limits hold.
-    turn_speed: rad/s. rate: samples a second. chord: m, of one path. refine: refine the rows first;
-    not of strokes. timeout: s, or None. plan() with a speed plans rows that are sure to keep what
+    turn_speed: rad/s. rate: samples a second. chord: m; slower where a
+    tool would leave its path by more between samples. refine: refine the rows first. timeout: s, or
+    None. plan() with a speed plans rows that are sure to keep what
     motions keep.
 
     Returns a Motion. Raises InputError, InvalidArgument and TimeoutError.
     """
     problem = _loaded(problem)
-    _refuse(problem, ("one path",), chord=chord)
-    _refuse(problem, ("one path", "two arms"), refine=refine)
     return _swivel._time(problem, rows, speed, turn_speed, rate, chord, refine, timeout)
 
 

@@ -79,7 +79,7 @@ export const list = ({ result }, { paths, parts, duration }) => ({
   count: paths.length,
 });
 
-/** The tables below the answer: transitions, work and times. */
+/** The tables below the answer: transitions, what refining brought, work and times. */
 export const tables = ({ result }, { parts, duration }) => [
   [
     'Transitions',
@@ -90,6 +90,17 @@ export const tables = ({ result }, { parts, duration }) => [
         `${rows.length > 2 ? `${rows.length - 2} corners` : 'straight'}, cost ${number(cost)}` +
           `${duration === null ? '' : `, ${number(to - from, 3)} s`}`,
       ]),
+  ],
+  [
+    'Refinement',
+    (result.refinement?.runs ?? []).map(
+      ({ stroke, reversed, refined, reason, cost_before, cost }) => [
+        stroke + (reversed ? ' (backwards)' : ''),
+        refined
+          ? `cost ${number(cost_before, 5)}, now ${number(cost, 5)}`
+          : `not refined: ${reason}`,
+      ],
+    ),
   ],
   ['Motion', words(result.motion)],
   timesOf(result.time_ms),

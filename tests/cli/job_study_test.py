@@ -111,12 +111,6 @@ class JobCampaigns(Studies):
 
     def test_refused(self):
         out = self.folder / "c.csv"
-        for planner in ("eager", "eager_dp"):
-            self.expect_refused(
-                "campaign", JOB, "--planner", planner, "--out", out,
-                message=f"^swivel: --planner: {planner} is not supported for jobs: allowed are "
-                "lazy, parallel\n$"
-            )
         still = self.folder / "job.yaml"
         still.write_text(
             JOB.read_text().split("vary:")[0].replace("../", str(JOB.parent.parent) + "/")
@@ -200,10 +194,6 @@ class JobPlacements(Studies):
 
     def test_refused(self):
         out = self.folder / "p.csv"
-        self.expect_refused(
-            "place", JOB, *self.GRID, "--planner", "eager", "--out", out,
-            message="^swivel: --planner: eager is not supported for jobs"
-        )
         self.expect_refused(
             "place", JOB, "--object", "poste", "--x", "0:1:1", "--out", out,
             message="^swivel: --object: unknown object 'poste', nearest is 'post'"

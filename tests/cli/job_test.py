@@ -276,20 +276,8 @@ class Jobs(WithFolder):
         self.assertEqual(done.returncode, 3)
         self.assertFalse(page.exists())
 
-    def test_options_that_jobs_do_not_take(self):
+    def test_files_of_a_job_without_times(self):
         file = self.file(one_job())
-        for option in (("--refine",), ("--chord", 1)):
-            with self.subTest(option[0]):
-                done = run("plan", file, *option)
-                self.assertEqual((done.returncode, done.stdout), (2, ""))
-                self.assertRegex(
-                    done.stderr, rf"^swivel: .*{option[0]}.*: is not supported yet for jobs, as "
-                    r".*job.yaml is one: allowed are problems with one path\n$"
-                )
-        for planner in ("eager", "eager_dp"):
-            done = run("plan", file, "--planner", planner)
-            self.assertEqual(done.returncode, 2)
-            self.assertRegex(done.stderr, "^swivel: --planner: .* allowed are lazy, parallel\n$")
         done = run("plan", file, "--out", "motion.json")
         self.assertEqual(done.returncode, 2)
         self.assertRegex(
@@ -565,10 +553,37 @@ class Timed(WithFolder):
         self.assertRegex(
             done.stderr, r"bad.csv: .*: allowed is a job that passes `swivel check`\n$"
         )
-        for option in (("--refine",), ("--chord", 1)):
-            done = run("time", job, out, *option)
-            self.assertEqual((done.returncode, done.stdout), (2, ""))
-            self.assertIn(f"{option[0]}: is not supported yet for jobs", done.stderr)
+
+    def test_refined_rows(self):
+        """`--refine` writes rows that cost less and pass the check, and says so for each stroke."""
+        job, out, result = self.file(one_job()), self.folder / "t.csv", self.folder / "r.json"
+        done = run("plan", job, "--out", out, "--json", result)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        before = json.loads(result.read_text())
+        self.assertIsNone(before["refinement"])
+        done = run("plan", job, "--refine", "--out", out, "--json", result)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        told = json.loads(result.read_text())
+        refined = told["refinement"]
+        self.assertEqual([run["stroke"] for run in refined["runs"]], ["left", "right"])
+        for run_, one in zip(refined["runs"], told["runs"], strict=True):
+            self.assertTrue(run_["refined"])
+            self.assertLess(run_["cost"], run_["cost_before"])
+            self.assertAlmostEqual(run_["cost"], one["cost"])
+        self.assertAlmostEqual(
+            before["cost"] - told["cost"], refined["cost_before"] - refined["cost"], 6
+        )
+        self.assertEqual(before["transitions"], told["transitions"])
+        self.assertAlmostEqual(told["lattice_cost"], before["lattice_cost"], 9)
+        self.assertRegex(
+            done.stdout, "\nrefined: cost .* before, .* now, without transitions\n"
+            "  stroke 'left': joints bend by at most .*\n  stroke 'right': joints bend"
+        )
+        checked = run("check", job, out)
+        self.assertEqual(checked.returncode, 0, checked.stdout)
+        done = run("plan", job, "--refine", "--timeout", "1e-9", "--json", result)
+        self.assertEqual(done.returncode, 3)
+        self.assertIsNone(json.loads(result.read_text())["refinement"])
 
     def test_what_cannot_be_executed(self):
         # The cheapest job of this episode jumps from branch to branch at a singularity.

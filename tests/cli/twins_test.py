@@ -41,11 +41,8 @@ BESIDE = {
     "--turn-speed": ("--speed", "0.05"), "--chord": ("--speed", "0.05"), "--full-map": ("--map", ),
     "--rate": ("--speed", "0.05")
 }
-# Options that a kind refuses by one line.
-REFUSED = {
-    ("job", "--refine"): "jobs are timed, not refined",
-    ("job", "--chord"): "its strokes have feeds",
-}
+# Options that a kind refuses by one line, with the reason: none.
+REFUSED = {}
 # Outputs: where there is a plan, where there is none, where it was stopped.
 WRITTEN = {
     "--out": (True, False, False), "--certificate": (False, True, False),
@@ -61,7 +58,6 @@ KEYS_OF_SOME = {
             "min_manipulability", "arm_angle", "diagnosis", "trajectory", "partial",
             "robot_pairs", "held", "joint_names"
         ],
-        "jobs are not refined": ["refinement"],
         "how large the proof is": ["certificate"],
     },
     "job": {
@@ -74,7 +70,6 @@ KEYS_OF_SOME = {
     },
     "two arms": {
         "of two arms": ["decided_by", "arms", "conflict", "between_arms", "between_arms_status"],
-        "as of one path": ["refinement"],
         "of a search over pairs": ["bound"],
     },
 }
@@ -160,6 +155,55 @@ class Twins(unittest.TestCase):
         self.assertEqual(file.exists(), is_written)
         if is_written:
             self.assertNotIn("of an earlier run", file.read_text())
+
+    def test_planners_of_kinds(self):
+        """All planners find the same cost, or that there is none; eager ones ask more."""
+        for kind, has_plan in itertools.product(KINDS, (True, False)):
+            told = {}
+            for planner in ("eager", "eager_dp", "lazy", "parallel"):
+                file = self.folder / "result.json"
+                done = run(
+                    "plan", self.files[kind, has_plan], "--planner", planner, "--json", file,
+                    "--quiet"
+                )
+                self.assertEqual(done.returncode, 0 if has_plan else 1, (kind, planner))
+                told[planner] = json.loads(file.read_text())
+                self.assertEqual(told[planner]["planner"], planner)
+            self.assertEqual(len({one["cost"] for one in told.values()}), 1, kind)
+            checked = {
+                planner: sum(
+                    arm["counters"]["nodes_checked"]
+                    for arm in (one["arms"] if kind == "two arms" else [one])
+                )
+                for planner, one in told.items()
+            }
+            self.assertEqual(checked["eager"], checked["eager_dp"], kind)
+            self.assertGreater(checked["eager"], checked["lazy"], kind)
+
+    def test_refinements_of_kinds(self):
+        """Refined rows cost less; with a chord the tool keeps nearer to its path."""
+        file = self.folder / "result.json"
+        for kind in KINDS:
+            costs = []
+            for options in ((), ("--refine",), ("--refine", "--speed", "0.05")):
+                done = run("plan", self.files[kind, True], "--json", file, *options)
+                self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+                told = json.loads(file.read_text())
+                costs.append(told["cost"])
+                self.assertEqual(told["refinement"] is not None, "--refine" in options)
+                if "--refine" in options:
+                    self.assertLess(told["refinement"]["cost"], told["refinement"]["cost_before"])
+                    self.assertRegex(done.stdout, "refined: cost .* before, .* now")
+            self.assertLess(costs[1], costs[0], kind)
+            rows, motion = self.folder / "rows.csv", self.folder / "motion.csv"
+            run("plan", self.files[kind, True], "--speed", "0.05", "--out", rows)
+            command = ("time", self.files[kind, True], rows, "--speed", "0.05", "--rate", "20")
+            done = run(*command, "--refine", "--chord", "0.000001", "--out", motion)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            self.assertRegex(done.stdout, "refined: cost")
+            slow = motion.read_text().count("\n")
+            run(*command, "--out", motion)
+            self.assertLess(motion.read_text().count("\n"), slow, kind)
 
     def test_maps_and_traces_of_kinds(self):
         """Each run has a map below its name, in text and SVG; the trace has the stages."""

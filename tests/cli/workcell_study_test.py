@@ -282,10 +282,6 @@ class WorkcellPlacements(Studies):
             "place", file, "--object", "left", "--x", "0:1:1", message="unknown object 'left'"
         )
         self.expect_refused(
-            "place", file, "--base", "--x", "0:1:1", "--planner", "eager",
-            message="--planner: eager is not supported for workcells"
-        )
-        self.expect_refused(
             "place", file, "--path", "--x", "0:1:1", "--write", self.folder / "b.yaml",
             message="--write: .*: the path has moved"
         )
@@ -363,10 +359,6 @@ class WorkcellCampaigns(Studies):
         self.expect_refused(
             "campaign", self.file(with_fixture()), "--episodes", 2, "--out", out,
             message="cell.yaml: vary: missing"
-        )
-        self.expect_refused(
-            "campaign", self.file(with_fixture()), "--planner", "eager_dp", "--out", out,
-            message="--planner: eager_dp is not supported for workcells"
         )
         self.assertFalse(out.exists())
 

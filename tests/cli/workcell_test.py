@@ -460,9 +460,6 @@ class Workcells(WithWorkcells):
         done = run("info", "--pairs", file)
         self.assertEqual(done.returncode, 2)
         self.assertIn("workcell", done.stderr)
-        done = self.plan(cell(), "--planner", "eager")
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("for workcells", done.stderr)
 
     def test_a_motion_in_time(self):
         file, motion = self.file(cell()), self.folder / "m.csv"

@@ -349,6 +349,29 @@ TEST(JobResult, Motions) {
   EXPECT_EQ(Json::parse(to_json(stopped, job))["motion"]["reason"], "stopped");
 }
 
+TEST(JobResult, Refinements) {
+  Answer answer = plan_of_two();
+  EXPECT_TRUE(Json::parse(to_json(answer, two_strokes()))["refinement"].is_null());
+  ASSERT_EQ(answer.arm().runs.size(), 2u);
+  RefinedRuns& refined = answer.refinement.emplace();
+  refined.cost_before = 3;
+  refined.cost = 2.5;
+  refined.runs = {{.refined = true, .cost_before = 2, .cost = 1.5},
+                  {.reason = "stopped", .cost_before = 1, .cost = 1}};
+  const Json json = Json::parse(to_json(answer, two_strokes()))["refinement"];
+  EXPECT_EQ(json["cost_before"], 3);
+  EXPECT_EQ(json["cost"], 2.5);
+  ASSERT_EQ(json["runs"].size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const StrokeRun& run = answer.arm().runs[k].run;
+    EXPECT_EQ(json["runs"][k]["stroke"], two_strokes().arm().strokes[run.stroke].name);
+    EXPECT_EQ(json["runs"][k]["reversed"], run.reversed);
+    EXPECT_EQ(json["runs"][k]["refined"], k == 0);
+    EXPECT_EQ(json["runs"][k]["cost"], refined.runs[k].cost);
+  }
+  EXPECT_EQ(json["runs"][1]["reason"], "stopped");
+}
+
 /// Adds the names of all keys of a document; list items count as one.
 void add_keys(const Json& value, const std::string& at, std::set<std::string>& keys) {
   if (value.is_array())
@@ -388,6 +411,7 @@ TEST(JobResult, KeysAreThoseOfTheSchema) {
     add_keys(Json::parse(to_json(result, two_strokes())), "", seen);
   Answer timed = plan_of_two();
   timed.motion = timed_plan(true);
+  timed.refinement.emplace().runs.resize(timed.arm().runs.size());
   add_keys(Json::parse(to_json(timed, two_strokes())), "", seen);
   Answer lifted = plan_of_two();
   lifted.arm().lift_offs.push_back({{0, 0.05, 0.05}, 0.06, {.kind = Cause::Kind::kSingular}});

@@ -19,6 +19,7 @@ import swivel
 
 PROGRAM, DATA = os.environ["SWIVEL"], Path(os.environ["SWIVEL_DATA"])
 DOOR = DATA / "problems" / "door_job.yaml"
+PLATE = DATA / "problems" / "sda10f_plate_workcell.yaml"
 HOME = [-0.6241, -1.2398, 0.7037, -0.7659, 0.8316, 1.8921, -0.3086]
 COARSE = swivel.Resolution(ds=0.02, dphi=0.2)
 
@@ -344,6 +345,75 @@ class JobMotions(unittest.TestCase):
         with self.assertRaisesRegex(swivel.InputError, r"row 3.*a job that passes `swivel check`$"):
             swivel.time(self.job, bad, speed=0.1)
 
+    def test_refined(self):
+        """Refined jobs cost less, in plans and motions; each run says what refining brought."""
+        plain, refined = swivel.plan(self.job), swivel.plan(self.job, refine=True)
+        self.assertEqual([run.refinement for run in plain.runs], [None, None])
+        self.assertLess(refined.cost, plain.cost)
+        for run in refined.runs:
+            self.assertTrue(run.refinement.refined)
+            self.assertLess(run.refinement.cost, run.refinement.cost_before)
+            self.assertAlmostEqual(run.refinement.cost, run.cost)
+        for part, before in zip(refined.parts, plain.parts, strict=True):
+            if part.stroke is None:
+                np.testing.assert_array_equal(part.joints, before.joints)
+            else:
+                np.testing.assert_array_equal(part.joints[[0, -1]], before.joints[[0, -1]])
+        self.assertTrue(swivel.check(self.job, refined))
+        self.assertIn("| refined: cost ", repr(refined))
+        with self.assertRaisesRegex(AttributeError, "^refinement: of one path"):
+            refined.refinement
+        timed = swivel.plan(self.job, speed=0.1, refine=True, chord=1e-5)
+        self.assertTrue(timed.motion.executable, timed)
+        self.assertEqual([one.refined for one in timed.motion.refinements], [True, True])
+        self.assertTrue(swivel.check(self.job, timed.motion, speed=0.1))
+        again = swivel.time(self.job, timed, speed=0.05, refine=True)
+        self.assertEqual(len(again.refinements), 2)
+        self.assertTrue(swivel.check(self.job, again))
+        copied = pickle.loads(pickle.dumps(refined))
+        self.assertEqual(
+            [run.refinement.cost for run in copied.runs],
+            [run.refinement.cost for run in refined.runs],
+        )
+        cell = swivel.plan(PLATE, refine=True, speed=0.05)
+        self.assertEqual(len(cell.motion.refinements), 2)
+        self.assertEqual(len(cell.motion.arms["left"].refinements), 1)
+
+    def test_own_functions(self):
+        """A check holds along strokes and transitions; a cost counts at the rows of strokes."""
+        free, asked, solved = swivel.plan(self.job), [], 0
+        for joint in range(7):
+            most = max(part.joints[:, joint].max() for part in free.parts) - 0.02
+
+            def low(joints, joint=joint, most=most):
+                asked.append(len(joints))
+                return joints[:, joint] < most
+
+            plans = [
+                swivel.plan(self.job, check=low, planner=planner)
+                for planner in ("lazy", "parallel")
+            ]
+            self.assertEqual(plans[0].cost, plans[1].cost)
+            if not plans[0].solved:
+                continue
+            solved += 1
+            self.assertGreater(plans[0].cost, free.cost)
+            for part in plans[0].parts:
+                self.assertLess(part.joints[:, joint].max(), most)
+        print(solved, "of 7 rules kept,", sum(asked), "states asked about")
+        self.assertGreaterEqual(solved, 2)
+        self.assertGreater(sum(asked), 100)
+        costly = swivel.plan(self.job, cost=lambda q: 0.01 * (q**2).sum(axis=1))
+        rows = sum(
+            0.01 * (part.joints**2).sum() for part in costly.parts if part.stroke is not None
+        )
+        moves = sum(
+            np.linalg.norm(np.diff(part.joints, axis=0), axis=1).sum() for part in costly.parts
+        )
+        self.assertAlmostEqual(costly.cost, rows + moves, 5)
+        none = swivel.plan(self.job, check=lambda joints: np.zeros(len(joints), bool))
+        self.assertEqual(none.status, swivel.Status.INFEASIBLE)
+
     def test_not_executable(self):
         # The cheapest job of this episode jumps from branch to branch at a singularity.
         job = swivel.load(DOOR)
@@ -643,9 +713,6 @@ class JobStudies(unittest.TestCase):
             ("exactly one", swivel.place, job, {"x": 0}),
             ("'poste'", swivel.place, job, {"object": "poste", "x": 0}),
             ("step", swivel.place, job, {"base": True, "x": (0, 1)}),
-            ("allowed for jobs are lazy and parallel", swivel.place, job,
-             {"base": True, "x": 0, "planner": "eager"}),
-            ("allowed for jobs are lazy and parallel", swivel.campaign, job, {"planner": "eager"}),
             ("episodes: 0", swivel.campaign, job, {"episodes": 0}),
             ("vary", swivel.campaign, still, {}),
             ("rapid: allowed", swivel.campaign, small(rapid=2.0), {}),
@@ -756,13 +823,6 @@ class JobErrors(unittest.TestCase):
         for function in (swivel.Planner, lambda of: swivel.measure(of, None)):
             self.raises(swivel.InvalidArgument, "a problem with strokes: .* of one path",
                         function, swivel.load(DOOR))
-        for name, value in (
-            ("check", len), ("check_motions", len), ("cost", len), ("chord", 0.1), ("refine", True)
-        ):
-            self.raises(swivel.InvalidArgument, f"{name}: of a problem of strokes: allowed with "
-                        "one path", swivel.plan, DOOR, **{name: value})
-        self.raises(swivel.InvalidArgument, "refine: .*strokes: allowed with one path or two arms",
-                    swivel.time, DOOR, DOOR, refine=True)
         self.raises(swivel.InvalidArgument, "stretch: a problem with strokes",
                     swivel.load(DOOR).stretch, 0.1)
         job = swivel.load(DOOR)
@@ -796,8 +856,6 @@ class JobErrors(unittest.TestCase):
             ("rate: allowed", swivel.plan, (job,), {"rate": 0}),
             ("timeout: not a positive", swivel.plan, (job,), {"timeout": 0}),
             ("threads: -1", swivel.plan, (job,), {"threads": -1}),
-            ("allowed for jobs are lazy and parallel", swivel.plan, (job,),
-             {"planner": "eager"}),
         ):
             self.raises(ValueError, message, function, *arguments, **keywords)
         self.raises(TypeError, "progress: not callable", swivel.plan, job, progress=3)

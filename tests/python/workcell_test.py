@@ -486,7 +486,8 @@ class Workcells(unittest.TestCase):
         cell = swivel.load(PLATE)
         for call in (
             lambda: swivel.Planner(cell), lambda: cell.stretch(0), lambda: cell.save("a.yaml"),
-            lambda: swivel.plan(cell, chord=0.1), lambda: swivel.check(cell, None, speed=1)
+            lambda: swivel.plan(cell, check=len), lambda: swivel.plan(cell, cost=len),
+            lambda: swivel.check(cell, None, speed=1)
         ):
             with self.assertRaisesRegex(swivel.InvalidArgument, "a problem of two arms: allowed"):
                 call()
@@ -503,8 +504,6 @@ class Workcells(unittest.TestCase):
         arms["right"] = self.arms(0.5, torso=0.2)["right"]
         with self.assertRaisesRegex(swivel.InvalidArgument, "hold"):
             swivel.Problem(arms)
-        with self.assertRaises(swivel.InvalidArgument):
-            swivel.plan(PLATE, planner="eager")
         with self.assertRaises(ValueError):
             swivel.plan(PLATE, threads=-1)
 
@@ -604,8 +603,6 @@ class WorkcellStudies(unittest.TestCase):
         cell = swivel.load(self.file)
         with self.assertRaisesRegex(swivel.InvalidArgument, "'left': no such object"):
             swivel.place(cell, object="left", x=0.1)
-        with self.assertRaisesRegex(swivel.InvalidArgument, "planner: allowed for workcells"):
-            swivel.place(cell, base=True, x=0.1, planner="eager")
         with self.assertRaisesRegex(swivel.InvalidArgument, "exactly one"):
             cell.placed([0.1, 0, 0, 0, 0, 0])
         with self.assertRaisesRegex(swivel.InvalidArgument, "unknown arm 'middle'"):

@@ -1,14 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Workcells of the two-armed robots of the data folder, drawn by chance.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <string>
 
 #include "robots.hpp"
 #include "seed.hpp"
+#include "swivel/core/problem/hooks.hpp"
 #include "swivel/core/problem/problem.hpp"
 
 namespace swivel::test {
+
+/// A rule of the caller's own, which two arms do not take.
+class AllowsAll final : public StateCheck {
+ public:
+  [[nodiscard]] std::string name() const override { return "all"; }
+  void states(std::span<const Config> states, std::span<bool> allowed) override {
+    std::fill_n(allowed.begin(), states.size(), true);
+  }
+};
 
 /// A straight run of a tool: from one place to another, without turning.
 struct ToolRun {

@@ -43,6 +43,7 @@ class StrokesWriter {
                                    {"searches", arm_.transitions.searches},
                                    {"rounds", arm_.transitions.rounds}};
     json["time_ms"] = time_json(result_.time_ms);
+    json["refinement"] = refinement();
     json["motion"] = motion();
     json["parts"] = parts(arm_.parts);
     json["partial"] = parts(arm_.partial);
@@ -171,6 +172,19 @@ class StrokesWriter {
     for (const AdviceAlone& one : all.alone)
       strokes.push_back({{"stroke", one.name}, {"advice", advice_json(one.advice)}});
     return {{"job", job}, {"strokes", strokes}};
+  }
+
+  [[nodiscard]] Json refinement() const {
+    if (!result_.refinement) return nullptr;
+    const RefinedRuns& all = *result_.refinement;
+    Json json = {{"cost_before", all.cost_before}, {"cost", all.cost}, {"runs", Json::array()}};
+    for (std::size_t k = 0; k < all.runs.size(); ++k) {
+      const StrokeRun& run = arm_.runs[k].run;
+      Json one = {{"stroke", name(run)}, {"reversed", run.reversed}};
+      one.update(refinement_json(all.runs[k]));
+      json["runs"].push_back(std::move(one));
+    }
+    return json;
   }
 
   [[nodiscard]] Json motion() const {

@@ -72,7 +72,7 @@ Json path_json(const Answer& answer, const AnswerExtras& extras) {
   json["time_ms"] = time_json(answer.time_ms);
   add_measures(json, run, solved);
   json["refinement"] =
-      answer.refinement ? refinement_json(answer.refinement->arms.front()) : Json(nullptr);
+      answer.refinement ? refinement_json(answer.refinement->runs.front()) : Json(nullptr);
   json["motion"] = motion_json(answer);
   json["diagnosis"] = answer.status == PlanStatus::kInfeasible && run.diagnosis
                           ? diagnosis_json(*run.diagnosis)

@@ -33,14 +33,14 @@ Json arm_json(const ArmAnswer& arm) {
 }
 
 /// Returns the refinement of both arms: what they have together, and that of each.
-Json refinement_of_both(const RefinedArms& refined, const std::array<std::string, 2>& names) {
+Json refinement_of_both(const RefinedRuns& refined, const std::array<std::string, 2>& names) {
   Json json = {{"cost_before", refined.cost_before},
                {"cost", refined.cost},
                {"turns", refined.turns},
                {"arms", Json::array()}};
   for (std::size_t k = 0; k < 2; ++k) {
     Json arm = {{"name", names[k]}};
-    arm.update(refinement_json(refined.arms[k]));
+    arm.update(refinement_json(refined.runs[k]));
     json["arms"].push_back(std::move(arm));
   }
   return json;

@@ -422,8 +422,7 @@ Schema min_margin() {
 Schema deepest_contact() {
   return or_null(section(
       "",
-      {key("depth", number(), "found at a row: the bodies are at least so deep",
-           "m"),
+      {key("depth", number(), "found at a row: the bodies are at least so deep", "m"),
        key("at_most", or_null(number()),
            "the bodies are nowhere deeper at rows; `null` where that is not known within 0.5 mm, "
            "as of a mesh that is not closed",
@@ -582,6 +581,18 @@ Schema motion_of_job() {
        key_of_some("warnings", list(text()), "as of [motions](#motion-in-the-result)")});
 }
 
+Schema refinement_of_job() {
+  const std::vector<Schema::Key> of_run{key("stroke", text(), "name of its stroke"),
+                                        key("reversed", boolean(), "whether it runs backwards")};
+  return section(
+      "job_refinement",
+      {key("cost_before", number(), "of all runs as the search found them, without transitions"),
+       key("cost", number(), "of all runs now; never more"),
+       key("runs", list(section("", join(of_run, refinement().keys))),
+           "of each run `stroke`, `reversed` and what refining it brought, as of "
+           "[results](#refinement)")});
+}
+
 /// Returns the keys that say what the answer of a job is.
 std::vector<Schema::Key> job_answer_keys() {
   return {
@@ -677,6 +688,8 @@ Schema job_result() {
           "`pairs` of configurations asked whether the way is free, `searches` for a way around, "
           "`rounds`: jobs tried"),
       key("time_ms", time_ms(), "where time went, as of [results](#times)", "ms"),
+      key("refinement", or_null(refinement_of_job()),
+          "`null` without `--refine`; [below](#refinement-of-a-job)"),
       key("motion", or_null(motion_of_job()),
           "`null` unless it is timed; [below](#motion-in-the-result-of-a-job)"),
       key("parts", parts_of_job(), "the rows: strokes and transitions, [below](#part-of-a-job)"),

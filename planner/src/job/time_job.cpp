@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
+#include "job/job_refiner.hpp"
 #include "job/process_range.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
@@ -12,6 +14,7 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/motion/joint_moves.hpp"
+#include "swivel/core/problem/validate.hpp"
 #include "swivel/core/timing/time_path.hpp"
 #include "swivel/planner/refine/motion.hpp"
 #include "swivel/planner/robot/motion_defaults.hpp"
@@ -36,16 +39,20 @@ RunSpeeds required_speeds(const Problem& job, const StrokeRun& run, const PathPr
                                    "its path, limits.tool_speed, or one speed for all (--speed)");
 }
 
+/// Times the run that is the k-th part.
+using TimeRun =
+    std::function<MotionResult(std::size_t k, const PathProblem&, const TimingOptions&)>;
+
 /// Joins timed parts to one motion.
 class JobTimer {
  public:
-  JobTimer(const PreparedRobot& robot, const Problem& job, const std::vector<Part>& parts,
-           const TimingOptions& options, const Budget& budget)
-      : robot_(robot),
-        chain_(robot.arm().chain),
+  JobTimer(const Chain& chain, const Problem& job, const std::vector<Part>& parts,
+           const TimingOptions& options, TimeRun time_run, const Budget& budget)
+      : chain_(chain),
         job_(job),
         parts_(parts),
         options_(options),
+        time_run_(std::move(time_run)),
         budget_(budget),
         rates_(joint_rates(chain_, job.arm().transition_limits, job.source)) {}
 
@@ -104,8 +111,7 @@ class JobTimer {
   std::optional<NoMotion> add_run(std::size_t k) {
     const StrokeRun& run = *parts_[k].run;
     const PathProblem problem = problem_of_run(job_, run);
-    MotionResult timed =
-        time_trajectory(robot_, problem, parts_[k].rows, timing_of(run, problem), budget_);
+    MotionResult timed = time_run_(k, problem, timing_of(run, problem));
     if (!timed.motion) return timed.failure;
     const std::size_t first = motion_.rows.empty() ? 0 : motion_.rows.size() - 1;
     append(k, timed.motion->rows);
@@ -127,6 +133,7 @@ class JobTimer {
     TimingOptions timing;
     timing.rate = options_.rate;
     timing.turn_speed = options_.turn_speed;
+    timing.chord = options_.chord;
     timing.speed = speeds.first;
     timing.speeds = std::move(speeds.from);
     return timing;
@@ -148,11 +155,11 @@ class JobTimer {
       motion_.events.push_back(event);
   }
 
-  const PreparedRobot& robot_;
   const Chain& chain_;
   const Problem& job_;
   const std::vector<Part>& parts_;
   const TimingOptions& options_;
+  const TimeRun time_run_;
   const Budget& budget_;
   JointRates rates_;
   ArmMotion motion_;
@@ -163,8 +170,8 @@ class JobTimer {
 void require_speeds(const Problem& job, const TimingOptions& options) {
   if (!(options.speed >= 0 && std::isfinite(options.speed)))
     throw InvalidArgument("speed: allowed are numbers > 0, m/s, and 0 for those of the strokes");
-  if (!options.speeds.empty() || options.chord)
-    throw InvalidArgument("speeds, chord: are of one path: allowed for strokes is neither");
+  if (!options.speeds.empty())
+    throw InvalidArgument("speeds: are of one path: allowed for strokes are none");
   for (std::size_t k = 0; k < job.arm().strokes.size(); ++k)
     static_cast<void>(required_speeds(job, {k, false}, problem_of_run(job, {k, false}), options));
   if (options.speed == 0) return;
@@ -174,17 +181,51 @@ void require_speeds(const Problem& job, const TimingOptions& options) {
                      options.speed, "speed");
 }
 
-MotionTiming time_job(const PreparedRobot& robot, const Problem& job,
-                      const std::vector<Part>& parts, const TimingOptions& options,
-                      const Budget& budget) {
-  const TraceSpan span("time job");
+namespace {
+
+/// Throws as time_job() says.
+void require_timeable(const PreparedRobot& robot, const Problem& job,
+                      const TimingOptions& options) {
   validate(job);
   robot.require_prepared_for(problem_of_run(job, {0, false}));
   require_speeds(job, options);
   if (!(options.rate > 0 && std::isfinite(options.rate)))
     throw InvalidArgument("rate: allowed are numbers above 0, samples a second");
+}
+
+}  // namespace
+
+MotionTiming time_job(const PreparedRobot& robot, const Problem& job,
+                      const std::vector<Part>& parts, const TimingOptions& options,
+                      const Budget& budget) {
+  const TraceSpan span("time job");
+  require_timeable(robot, job, options);
+  const auto time_run = [&](std::size_t k, const PathProblem& problem,
+                            const TimingOptions& timing) {
+    return time_trajectory(robot, problem, parts[k].rows, timing, budget);
+  };
+  return JobTimer(robot.arm().chain, with_motion_defaults(job), parts, options, time_run, budget)
+      .run();
+}
+
+RefinedJobMotion refine_and_time_job(const PreparedRobot& robot, const Problem& job,
+                                     std::vector<Part> parts, const TimingOptions& options,
+                                     const RefineOptions& refining, const Budget& budget) {
+  const TraceSpan span("refine and time job");
+  require_timeable(robot, job, options);
   const Problem completed = with_motion_defaults(job);
-  return JobTimer(robot, completed, parts, options, budget).run();
+  RefinedJobMotion found;
+  found.parts = std::move(parts);
+  JobRefiner refiner(robot, completed, found.parts, refining, budget);
+  const auto time_run = [&](std::size_t k, const PathProblem&, const TimingOptions& timing) {
+    return *refiner.refine(k, timing);
+  };
+  found.timing =
+      JobTimer(robot.arm().chain, completed, found.parts, options, time_run, budget).run();
+  if (found.timing.failure) refiner.refine_others();
+  found.refinement = refiner.runs();
+  found.refine_ms = refiner.refine_ms();
+  return found;
 }
 
 }  // namespace swivel

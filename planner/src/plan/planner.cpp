@@ -11,7 +11,7 @@
 #include "diagnosis/diagnosis.hpp"
 #include "measure/measure_rows.hpp"
 #include "plan/answer.hpp"
-#include "plan/keeps_branch.hpp"
+#include "plan/eager_planners.hpp"
 #include "plan/search.hpp"
 #include "plan/stopwatch.hpp"
 #include "plan/told_turns.hpp"
@@ -40,16 +40,6 @@ constexpr std::pair<PlannerKind, const char*> kNames[] = {{PlannerKind::kEager, 
                                                           {PlannerKind::kEagerDp, "eager_dp"},
                                                           {PlannerKind::kLazy, "lazy"},
                                                           {PlannerKind::kParallel, "parallel"}};
-
-bool is_eager(const PlanOptions& options) {
-  return options.planner == PlannerKind::kEager || options.planner == PlannerKind::kEagerDp;
-}
-
-/// The eager planners are the baseline, FCL used well, so that they do without distance proofs. The
-/// verdicts are the same.
-DistanceProofs distance_proofs_of(const PlanOptions& options) {
-  return is_eager(options) || options.fcl_alone ? DistanceProofs::kOff : DistanceProofs::kOn;
-}
 
 /// Returns the number of chunks of a batch. It is independent of the number of threads, so that
 /// what is asked is too. The eager planners have none: their nodes are shared out one by one. Each
@@ -92,12 +82,6 @@ std::vector<TrajectoryRow> partial_rows(const Lattice& lattice, SlotPath path) {
   std::vector<TrajectoryRow> rows;
   for (; !path.empty() && rows.empty(); path.pop_back()) rows = lattice.path_rows(path);
   return rows;
-}
-
-/// Returns whether what the hooks say of a state may differ from turn to turn of a joint.
-bool may_tell_turns_apart(const Hooks& hooks) {
-  const bool keeps_branch = dynamic_cast<const KeepsBranch*>(hooks.check.get()) != nullptr;
-  return hooks.cost || (hooks.check && !keeps_branch);
 }
 
 bool same_pose(const Pose& a, const Pose& b) {

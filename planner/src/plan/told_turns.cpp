@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plan/keeps_branch.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/messages/formatted.hpp"
 
@@ -58,6 +59,11 @@ std::string note_of(const std::string& name, const Sweep& sweep, double low, dou
 }
 
 }  // namespace
+
+bool may_tell_turns_apart(const Hooks& hooks) {
+  const bool keeps_branch = dynamic_cast<const KeepsBranch*>(hooks.check.get()) != nullptr;
+  return hooks.cost || (hooks.check && !keeps_branch);
+}
 
 void add_failed_nodes(const Verdicts& verdicts, const Lattice& lattice,
                       std::vector<std::vector<int>>& failed) {

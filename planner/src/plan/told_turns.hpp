@@ -11,6 +11,7 @@
 #include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/problem/hooks.hpp"
 #include "swivel/core/problem/path_problem.hpp"
 #include "swivel/graph/verdicts/verdicts.hpp"
 
@@ -43,6 +44,9 @@ inline void require_same_turns(const Lattice& lattice, const std::vector<Traject
                                    "turns");
   }
 }
+
+/// Returns whether what the hooks say of a state may differ from turn to turn of a joint.
+[[nodiscard]] bool may_tell_turns_apart(const Hooks& hooks);
 
 /// Returns a lattice like `lattice` that treats no bounded joint as a circle.
 [[nodiscard]] inline std::unique_ptr<Lattice> with_all_windings(std::unique_ptr<Lattice> lattice) {

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "swivel/planner/certificate/infeasibility_certificate.hpp"
-#include "swivel/planner/job/plan_job.hpp"
 #include "swivel/planner/job/time_job.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/refine/motion.hpp"
@@ -80,8 +79,7 @@ struct ProblemPlanner::OfStrokes : Impl {
   Answer plan(const PlanOptions& options, bool keeps_view) override {
     view = {};
     ProblemView* const kept = keeps_view ? &view : nullptr;
-    if (!asked.timing) return plan_job(prepared, problem, options, kept);
-    return plan_job_motion(prepared, problem, options, *asked.timing, kept);
+    return plan_job_motion(prepared, problem, options, asked.refine, asked.timing, kept);
   }
   [[nodiscard]] AdviceList advise(const Answer& answer, const PlanOptions& options) const override {
     return advise_job(prepared, problem, answer, options);

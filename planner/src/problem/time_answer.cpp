@@ -88,7 +88,20 @@ class AnswerTimer {
   void time_strokes(const PreparedRobot& robot) {
     const Problem& problem = given_.problem;
     std::vector<Part>& parts = timed_.answer.arm().parts = proved_parts(robot);
-    timed_.answer.motion = time_job(robot, problem, parts, timing_, budget_);
+    if (asked_.refine) {
+      const Problem smoothed = with_motion_defaults(problem);
+      for (Part& part : parts)
+        if (part.run)
+          part.rows = rows_on_path(robot, problem_of_run(smoothed, *part.run), part.rows);
+      RefinedJobMotion found =
+          refine_and_time_job(robot, problem, std::move(parts), timing_, {}, budget_);
+      parts = std::move(found.parts);
+      timed_.answer.refined = found.refinement.any();
+      timed_.answer.refinement = std::move(found.refinement);
+      timed_.answer.motion = std::move(found.timing);
+    } else {
+      timed_.answer.motion = time_job(robot, problem, parts, timing_, budget_);
+    }
     std::optional<Motion>& motion = timed_.answer.motion->motion;
     if (!motion || !proof_) return;
     CheckOptions options = *proof_;
@@ -130,7 +143,7 @@ class AnswerTimer {
       answer.refinement = std::move(found.refinement);
       answer.refined = answer.refinement->any();
       answer.motion = std::move(found.timing);
-      for (std::size_t k = 0; k < 2; ++k) rows[k] = answer.refinement->arms[k].rows;
+      for (std::size_t k = 0; k < 2; ++k) rows[k] = answer.refinement->runs[k].rows;
     } else {
       answer.motion = time_workcell(prepared, rows, timing_, budget_);
     }

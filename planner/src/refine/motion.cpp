@@ -10,7 +10,9 @@
 
 #include "measure/measure_rows.hpp"
 #include "plan/keeps_branch.hpp"
+#include "plan/stopwatch.hpp"
 #include "refine/motion_faults.hpp"
+#include "refine/refine_until_timed.hpp"
 #include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/lattice/scale.hpp"
@@ -263,6 +265,31 @@ MotionResult time_trajectory(const PreparedRobot& robot, const PathProblem& prob
   return time_rows(robot, problem, rows, options, true, budget);
 }
 
+void refine_until_timed(const PreparedRobot& robot, const PathProblem& problem,
+                        const std::vector<TrajectoryRow>& rows,
+                        std::optional<RefineOptions> refining,
+                        const std::optional<TimingOptions>& timing, const Budget& budget,
+                        RefinedMotion& found) {
+  constexpr double kMostExtra = 2e-3;  // m
+  Stopwatch watch;
+  for (;; refining->extra_clearance *= 4) {
+    if (refining) {
+      found.refinement = refine(robot, problem, rows, *refining, budget);
+      found.refine_ms += watch.lap();
+    }
+    if (!timing) return;
+    const std::vector<TrajectoryRow>& timed = refining ? found.refinement->rows : rows;
+    // More clearance at the layers makes smoother motions than postures between them: these come
+    // last.
+    const bool last = !refining || refining->extra_clearance > kMostExtra;
+    found.motion = time_rows(robot, problem, timed, *timing, last, budget);
+    if (!last && found.motion->failure && !found.motion->failure->too_near)
+      found.motion = time_rows(robot, problem, timed, *timing, true, budget);
+    found.time_ms += watch.lap();
+    if (last || !found.motion->failure || !found.motion->failure->too_near) return;
+  }
+}
+
 namespace {
 
 /// Returns the cheapest path. With `one_branch`, returns the cheapest that never changes branch if
@@ -341,11 +368,11 @@ Answer answer_of(MotionPlan plan, const std::optional<TimingOptions>& timing) {
   answer.timing = timing;
   answer.stopped = plan.stopped;
   if (plan.refinement) {
-    RefinedArms& refined = answer.refinement.emplace();
+    RefinedRuns& refined = answer.refinement.emplace();
     refined.turns = 1;
     refined.cost_before = plan.refinement->cost_before;
     refined.cost = plan.refinement->cost;
-    refined.arms.push_back(*std::move(plan.refinement));
+    refined.runs.push_back(*std::move(plan.refinement));
     answer.refined = refined.any();
   }
   if (!plan.motion) return answer;
@@ -379,35 +406,27 @@ MotionPlan plan_motion(Planner& planner, const PlanOptions& options, bool refine
   if (result.status != PlanStatus::kSolved) return plan;
   plan.lattice_path = result.trajectory;
   const PlanView view = planner.view();
-  RefineOptions margins;
-  margins.check = options.hooks.check;
   if (own_cost)
     plan.refinement = Refined{.rows = plan.lattice_path,
                               .rows_before = plan.lattice_path,
-                              .reason = "the caller's own cost is not refined",
+                              .reason = kOwnCostReason,
                               .cost_before = result.cost,
                               .cost = result.cost};
-  constexpr double kMostExtra = 2e-3;  // m
-  auto start = std::chrono::steady_clock::now();
+  RefinedMotion found;
+  const auto take_times = [&] {
+    if (found.refinement) plan.refinement = std::move(found.refinement);
+    plan.motion = std::move(found.motion);
+    if (found.refine_ms > 0) result.time_ms["refine"] += found.refine_ms;
+    if (found.time_ms > 0) result.time_ms["time"] += found.time_ms;
+  };
   try {
-    for (;; margins.extra_clearance *= 4) {
-      if (refined) {
-        plan.refinement = refine(view.robot, view.problem, plan.lattice_path, margins, budget);
-        result.time_ms["refine"] +=
-            ms_since(std::exchange(start, std::chrono::steady_clock::now()));
-      }
-      if (!timing) break;
-      const std::vector<TrajectoryRow>& rows = refined ? plan.refinement->rows : plan.lattice_path;
-      // More clearance at the layers makes smoother motions than postures between them: these come
-      // last.
-      const bool last = !refined || margins.extra_clearance > kMostExtra;
-      plan.motion = time_rows(view.robot, view.problem, rows, *timing, last, budget);
-      if (!last && plan.motion->failure && !plan.motion->failure->too_near)
-        plan.motion = time_rows(view.robot, view.problem, rows, *timing, true, budget);
-      result.time_ms["time"] += ms_since(std::exchange(start, std::chrono::steady_clock::now()));
-      if (!refined || !plan.motion->failure || !plan.motion->failure->too_near || last) break;
-    }
+    std::optional<RefineOptions> refining;
+    if (refined) refining.emplace().check = options.hooks.check;
+    refine_until_timed(view.robot, view.problem, plan.lattice_path, refining, timing, budget,
+                       found);
+    take_times();
   } catch (const Stopped&) {
+    take_times();
     stop(plan, refined && !plan.refinement, timing && (!plan.motion || !plan.motion->motion));
   }
   if (options.check) check(view, budget, plan);

@@ -788,10 +788,15 @@ Refined refine(const PreparedRobot& robot, const PathProblem& problem,
                const Budget& budget) {
   validate(problem);
   robot.require_prepared_for(problem);
-  if (!problem.closed || problem.start || rows.empty())
+  const bool closes = problem.closed && !problem.start,
+             keeps_begin = closes || options.keeps_begin, keeps_end = closes || options.keeps_end;
+  if (rows.empty() || !(keeps_begin || keeps_end))
     return refine_between_ends(robot, problem, rows, options, budget);
-  PathProblem pinned = problem;  // both ends of a closed path stay as they are
-  pinned.start = pinned.end = rows.front().q;
+  PathProblem pinned = problem;
+  if (keeps_begin) pinned.start = rows.front().q;
+  if (keeps_end) pinned.end = rows.back().q;
+  // The rows of arms that are not exact come back to other joints, by a little.
+  pinned.closed = problem.closed && pinned.start == pinned.end;
   return refine_between_ends(robot, pinned, rows, options, budget);
 }
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "plan/supported_options.hpp"
+#include "plan/require_no_hooks.hpp"
 #include "study/changes.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/messages/input_error.hpp"
@@ -342,7 +342,7 @@ class WorkcellTrials {
 }  // namespace
 
 AdviceList advise_workcell(const Problem& cell, const Answer& result, PlanOptions options) {
-  require_supported(options, "workcells");
+  require_no_hooks(options);
   if (result.status != PlanStatus::kInfeasible) return {};
   return WorkcellTrials(cell, result, options).advise();
 }

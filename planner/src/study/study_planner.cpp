@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "plan/supported_options.hpp"
+#include "plan/require_no_hooks.hpp"
 #include "swivel/planner/job/plan_job.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
@@ -53,15 +53,12 @@ StudyPlanner::StudyPlanner(std::shared_ptr<const PreparedRobot> robot, const Pro
     : robot_(std::move(robot)) {
   validate(like);
   if (like.arms.size() == 2) {
-    require_supported(options, "workcells");
+    require_no_hooks(options);
     return;
   }
   const PathProblem first = problem_of_run(like, {0, false});
   robot_->require_prepared_for(first);
-  if (is_path(like))
-    planner_.emplace(robot_, first);
-  else
-    require_supported(options, "jobs");
+  if (is_path(like)) planner_.emplace(robot_, first);
 }
 
 StudiedAnswer StudyPlanner::plan(const Problem& problem, const PlanOptions& options,

@@ -10,9 +10,10 @@
 
 #include "measure/measure_rows.hpp"
 #include "plan/answer.hpp"
+#include "plan/eager_planners.hpp"
+#include "plan/require_no_hooks.hpp"
 #include "plan/search.hpp"
 #include "plan/stopwatch.hpp"
-#include "plan/supported_options.hpp"
 #include "plan/told_turns.hpp"
 #include "swivel/collision/arms/inter_arm_world.hpp"
 #include "swivel/collision/world/world.hpp"
@@ -23,6 +24,7 @@
 #include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
+#include "swivel/graph/eager/eager_validity.hpp"
 #include "swivel/graph/search/pair_search.hpp"
 #include "swivel/parallel/executor.hpp"
 #include "swivel/planner/plan/planner.hpp"
@@ -48,6 +50,7 @@ struct PlannedArm : ArmInCell {
   Executor alone{1};
   GivenValidity sound;                        // of an arm whose motion is given
   std::optional<CollisionValidity> validity;  // of an arm that is planned
+  std::optional<EagerValidity> eager;         // of an arm that an eager planner plans
   /// What was found out about its nodes by all searches of the lattice; for a view alone.
   std::optional<Verdicts> noted;
   /// The path that a view shows: the answer, or else that of the arm by itself.
@@ -55,6 +58,7 @@ struct PlannedArm : ArmInCell {
   /// Has planned the arm by itself, where it has no path.
   std::unique_ptr<Planner> without_path;
   PairArm in_pair() {
+    if (eager) return {cost_to_go.get(), &*eager};
     return {cost_to_go.get(), is_given ? static_cast<Validity*>(&sound) : &*validity};
   }
   [[nodiscard]] PlanView view() const {
@@ -120,9 +124,7 @@ class WorkcellPlan {
   }
 
  private:
-  [[nodiscard]] DistanceProofs distance_proofs() const {
-    return options_.fcl_alone ? DistanceProofs::kOff : DistanceProofs::kOn;
-  }
+  [[nodiscard]] DistanceProofs distance_proofs() const { return distance_proofs_of(options_); }
   [[nodiscard]] ParallelFor work() {
     return {executor_.threads(),
             [this](int parts, const auto& body) { executor_.for_each(parts, body); }};
@@ -217,11 +219,15 @@ class WorkcellPlan {
   void make_searched() {
     executor_.for_each(2, [&](int k, int) {
       PlannedArm& arm = *arms_[static_cast<std::size_t>(k)];
+      arm.eager.reset();
       arm.validity.reset();
       arm.cost_to_go = make_cost_to_go(*arm.lattice, pruning_of(*arm.lattice), budget_);
       if (arm.is_given) return;
       arm.validity.emplace(*arm.lattice, arm.world, arm.rule, arm.problem.limits.edges,
                            distance_proofs(), arm.alone, 1, budget_);
+      if (is_eager(options_))
+        arm.eager.emplace(*arm.lattice, *arm.validity, options_.planner == PlannerKind::kEager,
+                          budget_);
     });
   }
   /// Replaces the lattice of an arm whose answer leaves the limits of joints that the lattice
@@ -234,6 +240,7 @@ class WorkcellPlan {
       if (turns_[k].empty())
         turns_[k] = turns_note(*arms_[k]->lattice, outcome.paths[k], off, arms_[k]->problem,
                                "pair of paths");
+      arms_[k]->eager.reset();
       arms_[k]->validity.reset();
       arms_[k]->cost_to_go.reset();
       arms_[k]->noted.reset();
@@ -357,6 +364,7 @@ class WorkcellPlan {
   void give_view() {
     const auto owner = std::make_shared<PlannedArms>(std::move(arms_));
     for (const auto& arm : *owner) {
+      arm->eager.reset();
       arm->validity.reset();
       arm->cost_to_go.reset();
       view_->runs.push_back(arm->view());
@@ -425,19 +433,19 @@ void measure_between_arms(const PreparedWorkcell& prepared, const Budget& budget
 
 Answer plan_workcell(const PreparedWorkcell& prepared, const PlanOptions& options,
                      ProblemView* view) {
-  require_supported(options, "workcells");
+  require_no_hooks(options);
   if (view) *view = {};
   return WorkcellPlan(prepared, options, options.budget(), view).plan(true);
 }
 
 Answer decide_workcell(const PreparedWorkcell& prepared, const PlanOptions& options,
                        const Budget& budget) {
-  require_supported(options, "workcells");
+  require_no_hooks(options);
   return WorkcellPlan(prepared, options, budget, nullptr).plan(false);
 }
 
 Answer plan_workcell(const Problem& cell, const PlanOptions& options) {
-  require_supported(options, "workcells");
+  require_no_hooks(options);
   return plan_workcell(PreparedWorkcell(cell), options);
 }
 

@@ -68,7 +68,7 @@ class AfterPlan {
     Stopwatch watch;
     const CheckOptions options{.margins = false, .budget = budget_};
     if (is_refined()) {
-      const auto& arms = answer_.refinement->arms;
+      const auto& arms = answer_.refinement->runs;
       require_passed(check_workcell(prepared_, {arms[0].rows, arms[1].rows}, options));
     }
     if (const Motion* const motion = answer_.timed())
@@ -82,10 +82,10 @@ class AfterPlan {
     answer_.stopped = true;
     answer_.motion.reset();
     if (!refined) return;
-    RefinedArms& none = answer_.refinement.emplace();
+    RefinedRuns& none = answer_.refinement.emplace();
     for (std::size_t k = 0; k < 2; ++k) {
       const double cost = answer_.arms[k].cost();
-      none.arms.push_back({.rows = planned_[k],
+      none.runs.push_back({.rows = planned_[k],
                            .rows_before = planned_[k],
                            .reason = "stopped",
                            .cost_before = cost,
@@ -97,7 +97,7 @@ class AfterPlan {
   /// Replaces rows and costs by the refined ones, where arms were refined.
   void take() {
     for (std::size_t k = 0; k < 2; ++k) {
-      const Refined& arm = answer_.refinement->arms[k];
+      const Refined& arm = answer_.refinement->runs[k];
       if (!arm.refined) continue;
       Part& part = answer_.arms[k].parts.front();
       part.rows = arm.rows;
@@ -127,7 +127,7 @@ RefinedWorkcellMotion refine_until_timed(const PreparedWorkcell& prepared, const
     found.refine_ms += watch.lap();
     const double time_ms = found.timing.time_ms, check_ms = found.timing.check_ms;
     found.timing = time_workcell(
-        prepared, {found.refinement.arms[0].rows, found.refinement.arms[1].rows}, options, budget);
+        prepared, {found.refinement.runs[0].rows, found.refinement.runs[1].rows}, options, budget);
     found.timing.time_ms += time_ms;
     found.timing.check_ms += check_ms;
     const auto& failure = found.timing.failure;

@@ -70,27 +70,27 @@ void require_refinable(const PreparedWorkcell& prepared) {
                      "arms that are planned");
 }
 
-RefinedArms refine_workcell(const PreparedWorkcell& prepared,
+RefinedRuns refine_workcell(const PreparedWorkcell& prepared,
                             const std::array<std::vector<TrajectoryRow>, 2>& rows,
                             const Budget& budget, double extra_clearance) {
   const TraceSpan span("refine workcell");
   constexpr int kMostRepeats = 4;
   constexpr double kWorthIt = 1 - 1e-3;
   require_refinable(prepared);
-  RefinedArms result;
-  result.arms.resize(2);
-  for (std::size_t k = 0; k < 2; ++k) result.arms[k].rows = rows[k];
+  RefinedRuns result;
+  result.runs.resize(2);
+  for (std::size_t k = 0; k < 2; ++k) result.runs[k].rows = rows[k];
   for (int turn = 0; turn < kMostRepeats; ++turn) {
     const double before = result.cost;
     for (std::size_t k = 0; k < 2; ++k) {
-      BesideOther beside(prepared, k, result.arms[1 - k].rows, budget);
+      BesideOther beside(prepared, k, result.runs[1 - k].rows, budget);
       RefineOptions options;
       options.second_seed = false;  // it is planned without the other arm
       options.extra_clearance = extra_clearance;
       options.by_layer = &beside;
       Refined found =
-          refine(prepared.robot(k), prepared.problem(k), result.arms[k].rows, options, budget);
-      Refined& arm = result.arms[k];
+          refine(prepared.robot(k), prepared.problem(k), result.runs[k].rows, options, budget);
+      Refined& arm = result.runs[k];
       if (turn == 0) {
         arm = std::move(found);
         continue;
@@ -106,8 +106,8 @@ RefinedArms refine_workcell(const PreparedWorkcell& prepared,
       arm.bend = found.bend;
     }
     ++result.turns;
-    result.cost = result.arms[0].cost + result.arms[1].cost;
-    if (turn == 0) result.cost_before = result.arms[0].cost_before + result.arms[1].cost_before;
+    result.cost = result.runs[0].cost + result.runs[1].cost;
+    if (turn == 0) result.cost_before = result.runs[0].cost_before + result.runs[1].cost_before;
     const double was = turn == 0 ? result.cost_before : before;
     if (!(result.cost < kWorthIt * was)) break;
   }

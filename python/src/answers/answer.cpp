@@ -63,13 +63,6 @@ Trajectory first_rows(const Arm& arm, const std::vector<swivel::Part>& parts) {
   return arm.trajectory_of(parts.empty() ? none : parts.front().rows);
 }
 
-std::optional<RefinedPath> refinement_of(const Arm& arm) {
-  const auto& refinement = arm.of.found->refinement;
-  if (!refinement) return {};
-  return RefinedPath{std::shared_ptr<const Refined>(arm.of.found, &refinement->arms[arm.number]),
-                     arm.found().joint_names};
-}
-
 /// Returns the runs between which no transition was found: their names, None for home.
 std::optional<std::pair<std::optional<std::string>, std::optional<std::string>>> no_transition_of(
     const Arm& arm) {
@@ -139,12 +132,14 @@ void bind_words_of_paths(py::class_<T>& type) {
           "lattice_path",
           [](const Arm& x) {
             const auto& refined = x.of.found->refinement;
-            return refined ? x.trajectory_of(refined->arms[x.number].rows_before)
+            return refined ? x.trajectory_of(refined->runs[x.number].rows_before)
                            : first_rows(x, x.found().parts);
           },
           "The trajectory before it was refined.")
-      .path_word("refinement", &refinement_of,
-                 "Refined, where it was asked for and there is a path.")
+      .path_word(
+          "refinement", [](const Arm& x) { return refinement_of(x, 0); },
+          "Refined, where it was asked for and there is a path; of strokes each of `runs` has its "
+          "own.")
       .path_word(
           "least_cost", [](const Arm& x) { return finite_or_none(x.found().run().least_cost); },
           "Of the path of the arm by itself; None where it has none.")
@@ -227,8 +222,8 @@ std::string words_of(const Answer& answer) {
   if (const auto took = found.time_ms.find("plan"); took != found.time_ms.end())
     text += formatted(" | %.1f ms", took->second);
   if (found.refinement) {
-    text += " | " + (found.arms.size() == 1
-                         ? refined_words(found.refinement->arms.front())
+    text += " | " + (answer.executed->arms.size() == 1 && is_path(*answer.executed)
+                         ? refined_words(found.refinement->runs.front())
                          : formatted("refined: cost %.6g before, %.6g now",
                                      found.refinement->cost_before, found.refinement->cost));
   }

@@ -65,11 +65,17 @@ struct Part {
   double begin = 0;
 };
 
+struct RefinedPath {
+  std::shared_ptr<const Refined> refined;
+  io::JointNames joint_names;
+};
+
 /// What a plan found out about a run of a stroke, or about a path.
 struct Run {
   std::shared_ptr<const RunAnswer> found;
   std::string stroke;
   std::optional<double> cost;  ///< in the answer; none if there is no answer
+  std::optional<RefinedPath> refinement;
 };
 
 /// A place at which the tool lifts off within a stroke.
@@ -89,11 +95,6 @@ struct Motion {
   [[nodiscard]] bool executable() const { return timing().motion && fault.empty(); }
   /// Returns the motion of all arms. Throws ValueError if there is none.
   [[nodiscard]] const swivel::Motion& motion() const;
-};
-
-struct RefinedPath {
-  std::shared_ptr<const Refined> refined;
-  io::JointNames joint_names;
 };
 
 /// What an independent look at rows found.
@@ -126,6 +127,9 @@ void require_strokes(const Answer& answer, const char* name);
 [[nodiscard]] std::vector<Part> parts_of(const Arm& arm, const std::vector<swivel::Part>& parts);
 /// Returns what was found out about each run of an arm.
 [[nodiscard]] std::vector<Run> runs_of(const Arm& arm);
+/// Returns what refining made of a run of an arm, by its number; nothing where none was asked for
+/// or there is no answer.
+[[nodiscard]] std::optional<RefinedPath> refinement_of(const Arm& arm, std::size_t run);
 /// Returns the places at which the tool of an arm lifts off.
 [[nodiscard]] std::vector<LiftOffPlace> lift_offs_of(const Arm& arm);
 /// Returns the runs of an arm in their order, of answers and of motions that were timed or loaded.

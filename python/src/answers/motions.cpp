@@ -134,11 +134,26 @@ std::optional<std::string> reason_of(const Motion& motion) {
 }
 
 std::optional<RefinedPath> refinement_of(const Motion& motion) {
+  require_path(motion.of, "refinement");
   const std::size_t arm = number_of(motion, "refinement");
   const auto& refinement = motion.of.found->refinement;
   if (!refinement) return {};
-  return RefinedPath{std::shared_ptr<const Refined>(motion.of.found, &refinement->arms[arm]),
+  return RefinedPath{std::shared_ptr<const Refined>(motion.of.found, &refinement->runs[arm]),
                      motion.of.found->arms[arm].joint_names};
+}
+
+std::vector<RefinedPath> refinements_of(const Motion& motion) {
+  std::vector<RefinedPath> all;
+  const swivel::Answer& found = *motion.of.found;
+  if (!found.refinement) return all;
+  const std::vector<Refined>& runs = found.refinement->runs;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    const std::size_t arm = found.arms.size() == 2 ? k : 0;
+    if (motion.arm.value_or(arm) == arm)
+      all.push_back(
+          {std::shared_ptr<const Refined>(motion.of.found, &runs[k]), found.arms[arm].joint_names});
+  }
+  return all;
 }
 
 Typed<"dict[str, Motion]"> arms_of(const Motion& motion) {
@@ -201,34 +216,6 @@ void bind_pieces(py::module_& m) {
             "<Slow from s = %.4f to %.4f m: %.0f %% of the speed, for the %s of joint %d>",
             x.from_s, x.to_s, 100 * x.share, to_string(x.reason), x.joint);
       });
-  py::class_<RefinedPath>(m, "Refined", "A path of the lattice and what refining made of it.")
-      .def(pickling<RefinedPath>())
-      .def_property_readonly(
-          "refined", [](const RefinedPath& x) { return x.refined->refined; },
-          "False: the rows are those given.")
-      .def_property_readonly(
-          "reason",
-          [](const RefinedPath& x) {
-            const std::string& reason = x.refined->reason;
-            return reason.empty() ? std::nullopt : std::optional(reason);
-          },
-          "Why they are, or None.")
-      .def_property_readonly("trajectory",
-                             [](const RefinedPath& x) {
-                               return Trajectory{std::shared_ptr<const std::vector<TrajectoryRow>>(
-                                                     x.refined, &x.refined->rows),
-                                                 x.joint_names};
-                             })
-      .def_property_readonly("cost_before",
-                             [](const RefinedPath& x) { return x.refined->cost_before; })
-      .def_property_readonly("cost", [](const RefinedPath& x) { return x.refined->cost; })
-      .def_property_readonly(
-          "bend_before", [](const RefinedPath& x) { return x.refined->bend_before; },
-          "Largest second divided difference of the joints, rad/m^2.")
-      .def_property_readonly(
-          "bend", [](const RefinedPath& x) { return x.refined->bend; }, "rad/m^2.")
-      .def("__repr__",
-           [](const RefinedPath& x) { return "<Refined " + refined_words(*x.refined) + ">"; });
 }
 
 /// Binds what a motion of any problem says.
@@ -362,7 +349,11 @@ void bind_samples(py::class_<Motion>& type) {
           },
           "How far the tool leaves its path between samples, m and rad.")
       .def_property_readonly("refinement", &refinement_of,
-                             "Refined, where rows were refined before they were timed; else None.");
+                             "Refined, where rows were refined before they were timed; else None. "
+                             "Not of strokes.")
+      .def_property_readonly("refinements", &refinements_of,
+                             "Refined of each run of strokes, or of each arm, where rows were "
+                             "refined before they were timed; else none.");
 }
 
 }  // namespace

@@ -84,6 +84,37 @@ void bind_part(py::module_& m) {
       .def("__repr__", [](const Part& x) { return "<Part " + part_words(x) + ">"; });
 }
 
+void bind_refined(py::module_& m) {
+  py::class_<RefinedPath>(m, "Refined", "A path of the lattice and what refining made of it.")
+      .def(pickling<RefinedPath>())
+      .def_property_readonly(
+          "refined", [](const RefinedPath& x) { return x.refined->refined; },
+          "False: the rows are those given.")
+      .def_property_readonly(
+          "reason",
+          [](const RefinedPath& x) {
+            const std::string& reason = x.refined->reason;
+            return reason.empty() ? std::nullopt : std::optional(reason);
+          },
+          "Why they are, or None.")
+      .def_property_readonly("trajectory",
+                             [](const RefinedPath& x) {
+                               return Trajectory{std::shared_ptr<const std::vector<TrajectoryRow>>(
+                                                     x.refined, &x.refined->rows),
+                                                 x.joint_names};
+                             })
+      .def_property_readonly("cost_before",
+                             [](const RefinedPath& x) { return x.refined->cost_before; })
+      .def_property_readonly("cost", [](const RefinedPath& x) { return x.refined->cost; })
+      .def_property_readonly(
+          "bend_before", [](const RefinedPath& x) { return x.refined->bend_before; },
+          "Largest second divided difference of the joints, rad/m^2.")
+      .def_property_readonly(
+          "bend", [](const RefinedPath& x) { return x.refined->bend; }, "rad/m^2.")
+      .def("__repr__",
+           [](const RefinedPath& x) { return "<Refined " + refined_words(*x.refined) + ">"; });
+}
+
 void bind_run(py::module_& m) {
   py::class_<Run>(m, "Run", "What a plan found out about one run of a stroke, or about a path.")
       .def(pickling<Run>())
@@ -110,6 +141,8 @@ void bind_run(py::module_& m) {
       .def_property_readonly(
           "diagnosis", [](const Run& x) { return x.found->diagnosis; },
           "Why it has no path by itself; None unless that is so.")
+      .def_readonly("refinement", &Run::refinement,
+                    "Refined, where it was asked for and there is an answer; else None.")
       .def("__repr__", [](const Run& x) {
         std::string text = "<Run " + run_words(x.stroke, x.found->run.reversed) + ": " +
                            to_string(x.found->status);
@@ -170,6 +203,14 @@ std::vector<Part> parts_of(const Arm& arm, const std::vector<swivel::Part>& of) 
   return parts;
 }
 
+std::optional<RefinedPath> refinement_of(const Arm& arm, std::size_t run) {
+  const auto& refinement = arm.of.found->refinement;
+  if (!refinement) return {};
+  const Refined& refined = refinement->runs.at(arm.number + run);
+  return RefinedPath{std::shared_ptr<const Refined>(arm.of.found, &refined),
+                     arm.found().joint_names};
+}
+
 std::vector<Run> runs_of(const Arm& arm) {
   std::vector<Run> runs;
   for (const RunAnswer& one : arm.found().runs) {
@@ -178,6 +219,7 @@ std::vector<Run> runs_of(const Arm& arm) {
     run.stroke = arm.of.executed->arms[arm.number].strokes[one.run.stroke].name;
     for (const swivel::Part& part : arm.found().parts)
       if (part.run == one.run) run.cost = part.cost;
+    run.refinement = refinement_of(arm, runs.size() - 1);
   }
   return runs;
 }
@@ -202,6 +244,7 @@ std::vector<LiftOffPlace> lift_offs_of(const Arm& arm) {
 
 void bind_parts_of_answers(py::module_& m) {
   bind_part(m);
+  bind_refined(m);
   bind_run(m);
   bind_lift_off(m);
 }

@@ -102,8 +102,8 @@ class JobPage {
     const auto part = part_of(k);
     const LatticeMap& map = run_maps_[k].map;
     const std::vector<PageRow> path = placed(lattice, map, rows_of(lattice, view.path), view.path);
-    std::vector<PageRow> rows = part ? placed_part(*part, view, map) : path;
-    json["beside"] = motion_ && part ? beside_json(path, rows) : Json::array();
+    std::vector<PageRow> rows = part ? placed_part(*part, k, view, map) : path;
+    json["beside"] = (motion_ || result_.refined) && part ? beside_json(path, rows) : Json::array();
     for (PageRow& row : rows) row.at.s += begin;
     json["run"] = json_["runs"][k];
     json["settings"] = settings_json(view.problem, lattice);
@@ -123,15 +123,18 @@ class JobPage {
              (order_[k].reversed ? " (backwards)" : "") + "</h2>\n" + to_svg(map);
     return json;
   }
-  /// Returns the rows of a part, which is a run, on its map. A run between lift-offs measures arm
-  /// angles from other planes in its rows than in its lattice, by the same angle all along.
-  [[nodiscard]] std::vector<PageRow> placed_part(std::size_t part, const PlanView& view,
+  /// Returns the rows of a part, which is the run of this number, on its map. A run between
+  /// lift-offs measures arm angles from other planes in its rows than in its lattice, by the same
+  /// angle all along.
+  [[nodiscard]] std::vector<PageRow> placed_part(std::size_t part, std::size_t run,
+                                                 const PlanView& view,
                                                  const LatticeMap& map) const {
     std::vector<TrajectoryRow> rows = result_.arm().parts[part].rows;
+    const double first =
+        (result_.refinement ? result_.refinement->runs.at(run).rows_before : rows).front().phi;
     if (motion_) rows = passed_rows(std::move(rows), samples_of(part), places_[part]);
     const bool piece = job_.arm().strokes[result_.arm().parts[part].run->stroke].piece.has_value();
-    const double turned =
-        piece ? wrap_angle(view.lattice.phi(0, view.path.front()) - rows.front().phi) : 0;
+    const double turned = piece ? wrap_angle(view.lattice.phi(0, view.path.front()) - first) : 0;
     for (TrajectoryRow& row : rows) row.phi += turned;
     std::vector<PageRow> shown = placed(view.lattice, map, rows, view.path);
     for (PageRow& row : shown) row.at.phi -= turned;

@@ -320,7 +320,8 @@ TEST(LiftOffs, RingInTime) {
   job.arm().strokes.front().resolution.ds = 0.01;
   job.arm().strokes.front().resolution.dphi = 0.1;
   const PreparedRobot robot(problem_of_run(job, {0, false}));
-  const Answer plan = plan_job_motion(robot, job, with_check(), {.speed = 0.05});
+  const Answer plan =
+      plan_job_motion(robot, job, with_check(), false, TimingOptions{.speed = 0.05});
   ASSERT_EQ(plan.arm().lift_offs.size(), 1u);
   ASSERT_TRUE(plan.timed());
   const Problem executed = executed_problem(with_motion_defaults(job), plan);

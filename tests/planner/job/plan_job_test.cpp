@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 
+#include "random_jobs.hpp"
 #include "robots.hpp"
 #include "seed.hpp"
 #include "swivel/collision/world/world.hpp"
@@ -31,54 +32,6 @@ namespace swivel {
 namespace {
 
 using namespace test;
-
-Problem load(const char* name) {
-  return io::load_job(std::string(SWIVEL_DATA_DIR) + "/problems/" + name);
-}
-
-/// A job of data/problems with its robot prepared, of which other placements are drawn.
-struct JobCase {
-  explicit JobCase(const char* name) : job(load(name)), robot(problem_of_run(job, {0, false})) {}
-  /// Returns the job with its scene as in an episode of a campaign.
-  [[nodiscard]] Problem episode(std::uint64_t k) const {
-    Problem moved = job;
-    moved.scene = episode_problem(problem_of_run(job, {0, false}), 1, k).scene;
-    return moved;
-  }
-  Problem job;
-  PreparedRobot robot;
-};
-
-/// Draws a job of the door with other placements, lines of approach and retract, and order.
-Problem random_job(const JobCase& of, Random& random) {
-  Problem job = of.episode(static_cast<std::uint64_t>(random.below(1000)));
-  while (job.arm().strokes.size() > 2 && random.coin(0.4)) job.arm().strokes.pop_back();
-  if (random.coin(0.3)) job.arm().home.reset();
-  for (Stroke& stroke : job.arm().strokes) {
-    stroke.reversible = random.coin();
-    if (random.coin(0.4)) stroke.approach = Vector3d(0, 0, -0.02);
-    if (random.coin(0.4)) stroke.retract = Vector3d(0, 0, -0.03);
-    stroke.resolution.ds = 0.02;
-    stroke.resolution.dphi = 0.1;
-  }
-  job.arm().order = random.coin(0.3) ? StrokeOrder::kBest : StrokeOrder::kGiven;
-  return job;
-}
-
-void expect_same(const Answer& a, const Answer& b, const std::string& what) {
-  ASSERT_EQ(a.status, b.status) << what;
-  ASSERT_EQ(a.cost, b.cost) << what;
-  ASSERT_EQ(a.bound, b.bound) << what;
-  ASSERT_EQ(a.arm().parts.size(), b.arm().parts.size()) << what;
-  ASSERT_EQ(a.arm().counters.fcl_calls, b.arm().counters.fcl_calls) << what;
-  ASSERT_EQ(a.arm().transitions.pairs, b.arm().transitions.pairs) << what;
-  for (std::size_t k = 0; k < a.arm().parts.size(); ++k) {
-    ASSERT_EQ(a.arm().parts[k].run, b.arm().parts[k].run) << what;
-    ASSERT_EQ(a.arm().parts[k].rows.size(), b.arm().parts[k].rows.size()) << what;
-    for (std::size_t i = 0; i < a.arm().parts[k].rows.size(); ++i)
-      ASSERT_EQ(a.arm().parts[k].rows[i].q, b.arm().parts[k].rows[i].q) << what;
-  }
-}
 
 TEST(PlanJob, PassesItsCheckAndIsTheSameAtAnyThreadCount) {
   Random random(seed("PlanJob"));
@@ -112,6 +65,44 @@ TEST(PlanJob, PassesItsCheckAndIsTheSameAtAnyThreadCount) {
   EXPECT_GE(solved, at_least(20));
   EXPECT_GE(best, at_least(3));
   EXPECT_GE(detours, at_least(3));
+}
+
+/// The eager planners ask about all nodes and edges first, and find the same jobs.
+TEST(PlanJob, EagerPlannersFindTheSameJobs) {
+  Random random(seed("PlanJob.Eager"));
+  const JobCase door("door_job.yaml");
+  int solved = 0;
+  const int count = trials(12);
+  for (int trial = 0; trial < count; ++trial) {
+    const std::string what = "trial " + std::to_string(trial);
+    Problem job = random_job(door, random);
+    while (job.arm().strokes.size() > 2) job.arm().strokes.pop_back();
+    for (Stroke& stroke : job.arm().strokes) {
+      stroke.resolution.ds = 0.05;
+      stroke.resolution.dphi = 0.3;
+      stroke.limits.joint_step = 1;
+      stroke.limits.tool_path_error = 0.05;
+    }
+    PlanOptions options;
+    options.planner = PlannerKind::kLazy;
+    const Answer lazy = plan_job(door.robot, job, options);
+    for (const PlannerKind kind : {PlannerKind::kEager, PlannerKind::kEagerDp}) {
+      options.planner = kind;
+      const Answer eager = plan_job(door.robot, job, options);
+      ASSERT_EQ(eager.status, lazy.status) << what;
+      ASSERT_EQ(eager.planner, to_string(kind)) << what;
+      ASSERT_EQ(eager.cost, lazy.cost) << what;
+      ASSERT_EQ(eager.bound_any, lazy.bound_any) << what;
+      ASSERT_GE(eager.arm().counters.nodes_checked, lazy.arm().counters.nodes_checked) << what;
+      ASSERT_EQ(eager.arm().parts.size(), lazy.arm().parts.size()) << what;
+      for (std::size_t k = 0; k < lazy.arm().parts.size(); ++k)
+        for (std::size_t i = 0; i < lazy.arm().parts[k].rows.size(); ++i)
+          ASSERT_EQ(eager.arm().parts[k].rows[i].q, lazy.arm().parts[k].rows[i].q) << what;
+    }
+    solved += lazy.has_rows();
+  }
+  std::printf("%d jobs, %d solved\n", count, solved);
+  EXPECT_GE(solved, at_least(4));
 }
 
 /// Joints 1 and 7 of two turns are circles, unless a step may move them by half a turn; no step of
@@ -219,7 +210,7 @@ TEST(PlanJob, JobsOfTheDataFolderBecomeMotions) {
     SCOPED_TRACE(name);
     const Problem job = with_motion_defaults(load(name));
     const PreparedRobot robot(problem_of_run(job, {0, false}));
-    const Answer plan = plan_job_motion(robot, job, {}, {.rate = 50});
+    const Answer plan = plan_job_motion(robot, job, {}, false, TimingOptions{.rate = 50});
     ASSERT_TRUE(plan.timed());
     EXPECT_EQ(plan.timed()->arms.front().events.size(), 2 * job.arm().strokes.size());
     std::vector<StrokeRun> order;
@@ -337,7 +328,7 @@ TEST(PlanJob, TakesEveryClassOfArm) {
     const PreparedRobot robot(problem_of_run(job, {0, false}));
     for (int trial = 0; trial < trials(3); ++trial) {
       if (trial > 0) job.arm().home = random_home(robot, job, random);
-      const Answer plan = plan_job_motion(robot, job, {}, {});
+      const Answer plan = plan_job_motion(robot, job, {}, false, TimingOptions{});
       if (plan.status != PlanStatus::kSolved) continue;
       ++solved;
       const Problem completed = with_motion_defaults(job);
@@ -454,7 +445,7 @@ TEST(JobMotion, KeepsRatesClearancesAndEvents) {
       job.arm().rapid = 0.5;
       const std::string what = job.source + " episode " + std::to_string(k);
       PlanOptions options;
-      const Answer plan = plan_job_motion(of->robot, job, options, {});
+      const Answer plan = plan_job_motion(of->robot, job, options, false, TimingOptions{});
       if (plan.status != PlanStatus::kSolved) continue;
       ASSERT_TRUE(plan.motion) << what;
       if (!plan.timed()) continue;
@@ -504,10 +495,12 @@ TEST(JobMotion, SpeedsAreStatedBeforePlanning) {
   job.arm().process_speed.reset();
   PlanOptions none;
   none.timeout_s = 1e-9;
-  EXPECT_THROW(static_cast<void>(plan_job_motion(door.robot, job, none, {})), InputError);
+  EXPECT_THROW(static_cast<void>(plan_job_motion(door.robot, job, none, false, TimingOptions{})),
+               InputError);
   job.arm().strokes[0].feed.assign(job.arm().strokes[0].waypoints.size(), 0.04);
-  EXPECT_EQ(plan_job_motion(door.robot, job, none, {}).status, PlanStatus::kTimeout);
-  const Answer plan = plan_job_motion(door.robot, job, {}, {});
+  EXPECT_EQ(plan_job_motion(door.robot, job, none, false, TimingOptions{}).status,
+            PlanStatus::kTimeout);
+  const Answer plan = plan_job_motion(door.robot, job, {}, false, TimingOptions{});
   ASSERT_TRUE(plan.timed());
   EXPECT_NEAR(plan.timed()->arms.front().runs.front().speed, 0.04, 1e-12);
 }
@@ -623,7 +616,7 @@ TEST(CheckJob, RefusesEventsThatLie) {
   Problem job = door.job;
   job.arm().strokes.resize(2);
   for (Stroke& stroke : job.arm().strokes) stroke.approach = Vector3d(0, 0, -0.02);
-  const Answer plan = plan_job_motion(door.robot, job, {}, {});
+  const Answer plan = plan_job_motion(door.robot, job, {}, false, TimingOptions{});
   ASSERT_TRUE(plan.timed());
   std::vector<StrokeRun> order;
   for (const RunAnswer& run : plan.arm().runs) order.push_back(run.run);
@@ -715,7 +708,7 @@ TEST(CheckJob, FindsTheDirectionsOfRunsInMotions) {
       stroke.reversible = &stroke != &job.arm().strokes.front();  // so that one runs forwards
       stroke.approach = Vector3d(0, 0, -0.02);
     }
-    const Answer plan = plan_job_motion(door.robot, job, {}, {});
+    const Answer plan = plan_job_motion(door.robot, job, {}, false, TimingOptions{});
     ASSERT_TRUE(plan.timed());
     std::vector<StrokeRun> order;
     std::vector<std::size_t> strokes;

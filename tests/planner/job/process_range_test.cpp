@@ -42,7 +42,7 @@ Problem drilling(bool reversible) {
 TEST(ProcessRange, BeginsAtTheFirstWaypointWhereTheApproachGoesOnIntoTheStroke) {
   const Problem job = drilling(false);
   const PreparedRobot robot(problem_of_run(job, {0, false}));
-  const Answer plan = plan_job_motion(robot, job, {}, {});
+  const Answer plan = plan_job_motion(robot, job, {}, false, TimingOptions{});
   ASSERT_EQ(plan.status, PlanStatus::kSolved);
   for (const Part& part : plan.arm().parts) {
     if (!part.run) continue;
@@ -118,7 +118,7 @@ struct SlowJob {
 
 TEST(ToolSpeed, FasterThanTheJobAsksIsRefused) {
   SlowJob slow;
-  const Answer plan = plan_job_motion(slow.robot, slow.job, {}, {});
+  const Answer plan = plan_job_motion(slow.robot, slow.job, {}, false, TimingOptions{});
   ASSERT_TRUE(plan.timed());
   ArmMotion motion = plan.timed()->arms.front();
   const AnswerCheck as_asked = slow.check(motion);
@@ -137,7 +137,8 @@ TEST(ToolSpeed, FasterThanTheJobAsksIsRefused) {
 
 TEST(ToolSpeed, IsThatOfThePlaceOrTheOneGivenForAll) {
   SlowJob slow;
-  const Answer fast = plan_job_motion(slow.robot, slow.job, {}, {.speed = 0.04});
+  const Answer fast =
+      plan_job_motion(slow.robot, slow.job, {}, false, TimingOptions{.speed = 0.04});
   ASSERT_TRUE(fast.timed());
   EXPECT_FALSE(slow.check(fast.timed()->arms.front()).passed);
   EXPECT_TRUE(slow.check(fast.timed()->arms.front(), 0.04).passed);

@@ -120,9 +120,6 @@ TEST(JobCampaign, RefusesWhatMakesNoSenseAndStops) {
   options.plan.timeout_s = 1e-9;
   EXPECT_TRUE(campaign(door, options).empty());
   options.plan.timeout_s.reset();
-  options.plan.planner = PlannerKind::kEager;
-  EXPECT_THROW(campaign(door, options), InvalidArgument);
-  options.plan.planner = PlannerKind::kLazy;
   door.job.vary.clear();
   EXPECT_THROW(campaign(door, options), InputError);
   door.job.arm().strokes.clear();

@@ -357,9 +357,6 @@ TEST(PlacedWorkcell, RefusesPathsThatCannotBeMovedAlike) {
   cell.arms[0].path().path_frame.clear();
   EXPECT_THROW(static_cast<void>(placed_problem(cell, kPaths, {})), InvalidArgument);
   EXPECT_NO_THROW(static_cast<void>(placed_problem(cell, kBase, {0.1, 0, 0, 0, 0, 0})));
-  PlanOptions options;
-  options.planner = PlannerKind::kEager;
-  EXPECT_THROW(PlacementPlanner(cell_with_scene(random, false), kBase, options), InvalidArgument);
 }
 
 /// Where an object is moved into a given motion there is no plan, which the row says; elsewhere
@@ -512,9 +509,9 @@ TEST(WorkcellCampaign, RefusesWhatMakesNoSenseAndStops) {
   options.plan.timeout_s = 1e-9;
   EXPECT_TRUE(campaign(cell, options).empty());
   options.plan.timeout_s.reset();
-  options.plan.planner = PlannerKind::kEager;
+  options.plan.hooks.check = std::make_shared<AllowsAll>();
   EXPECT_THROW(campaign(cell, options), InvalidArgument);
-  options.plan.planner = PlannerKind::kLazy;
+  options.plan.hooks.check.reset();
   cell.vary.clear();
   EXPECT_THROW(campaign(cell, options), InputError);
   cell.arms[1].path().waypoints.clear();

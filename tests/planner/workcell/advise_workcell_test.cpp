@@ -381,7 +381,7 @@ TEST(AdviseWorkcell, SaysNothingWithoutTimeAndWhereThereIsAPlan) {
   Answer solved = result;
   solved.status = PlanStatus::kSolved;
   EXPECT_TRUE(advise_workcell(cell, solved, none).changes.empty());
-  none.planner = PlannerKind::kEager;
+  none.hooks.check = std::make_shared<AllowsAll>();
   EXPECT_THROW(static_cast<void>(advise_workcell(cell, result, none)), InvalidArgument);
 }
 

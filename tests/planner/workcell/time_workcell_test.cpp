@@ -447,12 +447,12 @@ TEST(RefineWorkcell, IsCheaperAndValid) {
     ++solved;
     in_conflict += found.pair.decided_by != PairSearch::kArmsAlone;
     const std::array<std::vector<TrajectoryRow>, 2> rows = rows_of_arms(found);
-    const RefinedArms refined = refine_workcell(*prepared, rows);
+    const RefinedRuns refined = refine_workcell(*prepared, rows);
     EXPECT_NEAR(refined.cost_before, found.cost, 1e-9 * found.cost);
     EXPECT_LE(refined.cost, refined.cost_before);
     EXPECT_LE(refined.turns, 4);
     const AnswerCheck check =
-        check_workcell(*prepared, {refined.arms[0].rows, refined.arms[1].rows}, {.margins = false});
+        check_workcell(*prepared, {refined.runs[0].rows, refined.runs[1].rows}, {.margins = false});
     EXPECT_TRUE(check.passed) << (check.failures.empty() ? "" : check.failures.front());
     double cost = 0;
     for (const CheckResult& arm : check.runs) {
@@ -465,7 +465,7 @@ TEST(RefineWorkcell, IsCheaperAndValid) {
     const TimingOptions options{.speed = 0.25};
     const MotionTiming before = time_workcell(*prepared, rows, options),
                        after = time_workcell(*prepared,
-                                             {refined.arms[0].rows, refined.arms[1].rows}, options);
+                                             {refined.runs[0].rows, refined.runs[1].rows}, options);
     if (!before.motion || !after.motion) continue;
     ++timed;
     faster += after.motion->duration < before.motion->duration;
@@ -514,7 +514,7 @@ TEST(RefineWorkcell, IsPlannedTimedAndProvedInOneCall) {
       const ArmAnswer& arm = plan.arms[k];
       EXPECT_EQ(arm.run().lattice.cost, plain.arms[k].cost());
       EXPECT_EQ(arm.run().evidence.postures, plain.arms[k].run().evidence.postures);
-      const std::vector<TrajectoryRow>& rows = plan.refinement->arms[k].rows;
+      const std::vector<TrajectoryRow>& rows = plan.refinement->runs[k].rows;
       ASSERT_EQ(arm.rows().size(), rows.size());
       for (std::size_t row = 0; row < rows.size(); ++row) EXPECT_EQ(arm.rows()[row].q, rows[row].q);
     }
@@ -563,7 +563,7 @@ TEST(RefineWorkcell, RefinesAndTimesRowsOfOtherPlans) {
     } catch (const InputError&) {
       continue;  // a follower has other layers where its leader rounds corners
     }
-    const RefinedArms& refined = found->refinement;
+    const RefinedRuns& refined = found->refinement;
     EXPECT_LE(refined.cost, refined.cost_before);
     EXPECT_NEAR(refined.cost_before, plain.cost, 0.05 * plain.cost);
     cheaper += refined.cost < refined.cost_before;

@@ -225,6 +225,35 @@ TEST(Workcell, IsTheSameOnTwoThreads) {
   }
 }
 
+/// The eager planners ask about all nodes and edges of either arm first, and find the same.
+TEST(Workcell, IsTheSameWithEagerPlanners) {
+  Random random(seed("Workcell.IsTheSameWithEagerPlanners"));
+  const TestRobot robot = two_armed("sda10f");
+  int solved = 0, together = 0;
+  const int count = trials(24);
+  for (int trial = 0; trial < count; ++trial) {
+    const PreparedWorkcell prepared(random_workcell(robot, random));
+    const Answer lazy = plan_workcell(prepared, lazily());
+    for (const PlannerKind kind : {PlannerKind::kEager, PlannerKind::kEagerDp}) {
+      PlanOptions options = lazily();
+      options.planner = kind;
+      const Answer eager = plan_workcell(prepared, options);
+      ASSERT_EQ(eager.status, lazy.status);
+      ASSERT_EQ(eager.cost, lazy.cost);
+      ASSERT_EQ(eager.bound, lazy.bound);
+      for (std::size_t k = 0; k < 2; ++k) {
+        expect_equal_rows(eager.arms[k].rows(), lazy.arms[k].rows());
+        ASSERT_GE(eager.arms[k].counters.nodes_checked, lazy.arms[k].counters.nodes_checked);
+      }
+    }
+    solved += lazy.has_rows();
+    together += lazy.has_rows() && lazy.pair.decided_by != PairSearch::kArmsAlone;
+  }
+  std::printf("%d of %d solved, %d not by each arm alone\n", solved, count, together);
+  EXPECT_GE(solved, at_least(8));
+  EXPECT_GE(together, at_least(2));
+}
+
 TEST(Workcell, BeginsAndEndsInGivenPostures) {
   Random random(seed("Workcell.BeginsAndEndsInGivenPostures"));
   const TestRobot robot = two_armed("sda10f");

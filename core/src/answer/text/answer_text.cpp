@@ -142,7 +142,8 @@ std::string answer_text(const Answer& answer, const Problem& problem) {
 std::string whole_text(const Answer& answer, const Problem& problem, const AdviceList* advice) {
   const std::string text =
       answer_text(answer, problem) + (advice != nullptr ? advice_text(*advice) : "");
-  return is_path(problem) ? text : text + refined_text(answer) + timed_text(answer, problem);
+  return is_path(problem) ? text
+                          : text + refined_text(answer, problem) + timed_text(answer, problem);
 }
 
 std::string answer_text(const PlanResult& result) {

@@ -152,7 +152,7 @@ std::string motion_text(const Answer& result, const Problem& job) {
   const std::size_t strokes = job.arm().strokes.size() - result.arm().lift_offs.size();
   std::string text = formatted("solved: %zu stroke%s, cost %.6g: ", strokes,
                                strokes == 1 ? "" : "s", result.cost) +
-                     bounds_text(result, job) +
+                     (result.refined ? "before refining " : "") + bounds_text(result, job) +
                      (result.arm().lift_offs.empty() ? "" : ", with the lift-offs at these places");
   if (!result.arm().held.empty()) text += " | held: " + words(result.arm().held);
   text += '\n';

@@ -164,9 +164,9 @@ std::string place_text(const MotionTiming& timing, const Answer& answer, const P
 
 }  // namespace
 
-std::string refined_text(const Answer& answer) {
+std::string refined_text(const Answer& answer, const Problem& problem) {
   if (!answer.refinement) return "";
-  const RefinedArms& all = *answer.refinement;
+  const RefinedRuns& all = *answer.refinement;
   const auto bend = [](const Refined& one) {
     return one.refined ? formatted("joints bend by at most %.3g rad/m^2 before, %.3g now\n",
                                    one.bend_before, one.bend)
@@ -174,10 +174,20 @@ std::string refined_text(const Answer& answer) {
   };
   std::string text;
   if (all.any()) text = formatted("refined: cost %.6g before, %.6g now", all.cost_before, all.cost);
-  if (all.arms.size() == 1) return text + (all.any() ? "; " : "") + bend(all.arms.front());
-  if (all.any()) text += ", in " + plural(static_cast<std::size_t>(all.turns), "turn") + "\n";
-  for (std::size_t k = 0; k < all.arms.size(); ++k)
-    text += "  " + answer.arms[k].name + ": " + bend(all.arms[k]);
+  if (is_path(problem)) return text + (all.any() ? "; " : "") + bend(all.runs.front());
+  const bool two_arms = answer.arms.size() == 2;
+  if (all.any())
+    text += (two_arms ? ", in " + plural(static_cast<std::size_t>(all.turns), "turn")
+                      : std::string(", without transitions")) +
+            "\n";
+  std::vector<std::string> names;
+  for (const ArmAnswer& arm : answer.arms)
+    if (two_arms) names.push_back(arm.name);
+  if (!two_arms)
+    for (const Part& part : answer.arm().parts)
+      if (part.run) names.push_back("stroke " + words(*part.run, problem));
+  for (std::size_t k = 0; k < all.runs.size(); ++k)
+    text += "  " + names[k] + ": " + bend(all.runs[k]);
   return text;
 }
 

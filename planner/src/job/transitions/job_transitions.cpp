@@ -2,6 +2,7 @@
 #include "job/transitions/job_transitions.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "job/transitions/rrt_connect.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
@@ -52,12 +53,13 @@ double transition_distance(const Lattice& metric, const Config& from, const Conf
 
 JobTransitions::JobTransitions(const PreparedRobot& robot, const World& world, const Limits& limits,
                                const Lattice& metric, DistanceProofs proofs, Executor& executor,
-                               const Budget& budget)
+                               std::shared_ptr<StateCheck> check, const Budget& budget)
     : world_(&world),
       limits_(&limits),
       metric_(&metric),
       executor_(&executor),
       budget_(budget),
+      check_(std::move(check), budget),
       rule_(world.edge_rule(robot.radii())) {
   for (int k = 0; k < kParts; ++k) queries_.emplace_back(world, proofs);
 }
@@ -69,8 +71,27 @@ JobTransitions::Key JobTransitions::key(int transition, const Config& from, cons
   return key;
 }
 
-bool JobTransitions::free(World::Query& query, const Config& from, const Config& to) const {
-  return !edge_blocked(query, rule_, from, from + metric_->delta(from, to), budget_);
+bool JobTransitions::is_free(World::Query& query, const Config& from, const Config& to) {
+  return !edge_blocked(query, rule_, from, to, budget_) && allows(from, to);
+}
+
+bool JobTransitions::allows(const Config& from, const Config& to) {
+  if (!check_) return true;
+  constexpr double kStep = 0.05;  // rad or m
+  const Config move = to - from;
+  double most = 0;
+  for (const double part : move.coordinates()) most = std::max(most, std::abs(part));
+  const int steps = std::max(1, static_cast<int>(std::ceil(most / kStep)));
+  std::vector<Config> states;
+  for (int k = 0; k <= steps; ++k)
+    states.push_back(from + (static_cast<double>(k) / static_cast<double>(steps)) * move);
+  const auto allowed = check_.states(states);
+  if (!std::all_of(allowed.begin(), allowed.end(), [](bool one) { return one; })) return false;
+  if (!check_.checks_motions()) return true;
+  std::vector<StateCheck::Motion> moves;
+  for (std::size_t k = 1; k < states.size(); ++k) moves.push_back({states[k - 1], states[k]});
+  const auto free = check_.motions(moves);
+  return std::all_of(free.begin(), free.end(), [](bool one) { return one; });
 }
 
 double JobTransitions::cost_through(const Chain& chain, const TransitionQuestion& question) const {
@@ -78,8 +99,8 @@ double JobTransitions::cost_through(const Chain& chain, const TransitionQuestion
          distance(chain.corners.back(), question.to);
 }
 
-std::optional<JobTransitions::Way> JobTransitions::known_way(
-    World::Query& query, const TransitionQuestion& question) const {
+std::optional<JobTransitions::Way> JobTransitions::known_way(World::Query& query,
+                                                             const TransitionQuestion& question) {
   if (free(query, question.from, question.to))
     return Way{distance(question.from, question.to), nullptr};
   const auto known = chains_.find(question.transition);
@@ -95,14 +116,14 @@ std::optional<JobTransitions::Way> JobTransitions::known_way(
   return std::nullopt;
 }
 
-std::optional<JobTransitions::Chain> JobTransitions::search(
-    World::Query& query, const TransitionQuestion& question) const {
+std::optional<JobTransitions::Chain> JobTransitions::search(World::Query& query,
+                                                            const TransitionQuestion& question) {
   const Config to = question.from + metric_->delta(question.from, question.to);
   const auto known = chains_.find(question.transition);
   const std::size_t searched = known == chains_.end() ? 0 : known->second.size();
   auto corners = rrt_connect(
       question.from, to, search_box(*metric_, *limits_, question.from, to),
-      [&](const Config& a, const Config& b) { return !edge_blocked(query, rule_, a, b, budget_); },
+      [&](const Config& a, const Config& b) { return is_free(query, a, b); },
       seed_of(question.transition, searched), budget_);
   if (!corners || corners->empty()) return std::nullopt;
   Chain chain{std::move(*corners), 0};

@@ -13,6 +13,7 @@
 #include "swivel/graph/search/job_search.hpp"
 #include "swivel/parallel/executor.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
+#include "validity/asked_hooks.hpp"
 
 namespace swivel {
 
@@ -27,10 +28,11 @@ namespace swivel {
 /// move the short way round; the caller sees to their limits.
 class JobTransitions final : public Transitions {
  public:
-  /// `metric` says what moves cost. All references must outlive it.
+  /// `metric` says what moves cost; `check`: the caller's own rule on states, or null, beside which
+  /// `executor` must have one thread. All references must outlive it.
   JobTransitions(const PreparedRobot& robot, const World& world, const Limits& limits,
                  const Lattice& metric, DistanceProofs proofs, Executor& executor,
-                 const Budget& budget);
+                 std::shared_ptr<StateCheck> check, const Budget& budget);
 
   [[nodiscard]] double distance(const Config& from, const Config& to) const override {
     return transition_distance(*metric_, from, to);
@@ -50,6 +52,10 @@ class JobTransitions final : public Transitions {
   /// Returns the bodies that bar the straight move; none where it is free.
   [[nodiscard]] std::optional<std::array<std::string, 2>> barred(const Config& from,
                                                                  const Config& to);
+  /// Returns whether the caller's own rule allows the straight move from a configuration to
+  /// another: states along it, at most 0.05 rad (or m) of each joint apart, both ends among them;
+  /// and the moves from each of these states to the next, if the rule is asked about motions.
+  [[nodiscard]] bool allows(const Config& from, const Config& to);
   [[nodiscard]] CollisionCounters counters() const;
 
  private:
@@ -68,12 +74,17 @@ class JobTransitions final : public Transitions {
   /// Calls body(k, query) for k from 0 to count - 1, shared among threads.
   template <class Body>
   void for_each(std::size_t count, const Body& body);
-  [[nodiscard]] bool free(World::Query& query, const Config& from, const Config& to) const;
+  /// Returns whether the move from a configuration to another, which it reaches as it is, is free.
+  [[nodiscard]] bool is_free(World::Query& query, const Config& from, const Config& to);
+  /// Returns whether the move from a configuration to another, the short way round, is free.
+  [[nodiscard]] bool free(World::Query& query, const Config& from, const Config& to) {
+    return is_free(query, from, from + metric_->delta(from, to));
+  }
   /// Returns the straight move, or else the cheapest known chain, if one is free.
   [[nodiscard]] std::optional<Way> known_way(World::Query& query,
-                                             const TransitionQuestion& question) const;
+                                             const TransitionQuestion& question);
   [[nodiscard]] std::optional<Chain> search(World::Query& query,
-                                            const TransitionQuestion& question) const;
+                                            const TransitionQuestion& question);
   [[nodiscard]] double cost_through(const Chain& chain, const TransitionQuestion& question) const;
 
   const World* world_;
@@ -81,6 +92,7 @@ class JobTransitions final : public Transitions {
   const Lattice* metric_;
   Executor* executor_;
   Budget budget_;
+  AskedCheck check_;
   EdgeRule rule_;
   /// Of parts of a batch, whose number does not depend on the threads, so that counters do not.
   std::vector<World::Query> queries_;

@@ -155,7 +155,7 @@ struct Answer {
   /// What refining brought, where it was asked for and there are rows. Then cost, rows and measures
   /// are those of the refined rows; lattice_cost, bounds and RunAnswer::lattice stay those of the
   /// lattices' paths.
-  std::optional<RefinedArms> refinement;
+  std::optional<RefinedRuns> refinement;
   /// How a motion in time was asked for; `speed` is 0 where each stroke has its own.
   std::optional<TimingOptions> timing;
   /// The motion, where one was asked for, there are rows, and time was left to make it.

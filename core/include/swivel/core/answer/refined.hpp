@@ -23,15 +23,16 @@ struct Refined {
   bool from_second_seed = false;
 };
 
-/// The refined trajectories of the arms of an answer, and how they changed.
-struct RefinedArms {
-  /// The rows of each arm, refined or not, with the cost before and now, and the work of all turns.
-  std::vector<Refined> arms;
-  int turns = 0;                     ///< times that both arms were refined, one after the other
-  double cost_before = 0, cost = 0;  ///< of all arms together
-  /// Returns whether the rows of any arm are refined ones.
+/// What refining made of the runs of an answer.
+struct RefinedRuns {
+  /// The rows of each run, refined or not, with the cost before and now, and the work of all turns:
+  /// of one arm in the order in which its runs are executed, of two arms the run of either.
+  std::vector<Refined> runs;
+  int turns = 0;                     ///< times that each run was refined
+  double cost_before = 0, cost = 0;  ///< of the answer: runs, transitions and lift-offs
+  /// Returns whether the rows of any run are refined ones.
   [[nodiscard]] bool any() const {
-    return std::any_of(arms.begin(), arms.end(), [](const Refined& arm) { return arm.refined; });
+    return std::any_of(runs.begin(), runs.end(), [](const Refined& run) { return run.refined; });
   }
 };
 

@@ -6,9 +6,10 @@
 
 namespace swivel {
 
-/// Returns what refining the rows of an answer brought, for people: of one path a line, of two arms
-/// a line and one for each arm. Empty where no refinement was asked for.
-[[nodiscard]] std::string refined_text(const Answer& answer);
+/// Returns what refining the rows of an answer brought, for people: of one path a line, else a line
+/// and one for each run or arm. Empty where no refinement was asked for. `problem` is
+/// executed_problem() of the answer.
+[[nodiscard]] std::string refined_text(const Answer& answer, const Problem& problem);
 
 /// Returns the main figures of the motion of an answer for people, or why there is none. Empty
 /// where no motion was made. Of one path a line; with `in_full` one for each rate of joints, each

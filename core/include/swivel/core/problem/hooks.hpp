@@ -33,7 +33,9 @@ class Hook {
 
 /// A user's own rule on joint positions, besides limits, manipulability and collision: no path goes
 /// through what it refuses. It is asked in batches, only about states that all other rules allow,
-/// and named as the cause "check <name>".
+/// and named as the cause "check <name>". On the straight moves of transitions between strokes it
+/// is asked about states at most 0.05 rad (or m) of each joint apart, and about the motions from
+/// each of these to the next.
 class StateCheck : public Hook {
  public:
   /// Sets allowed[k] to whether the arm may stand at states[k], joint positions in rad, base to
@@ -53,7 +55,8 @@ class StateCheck : public Hook {
 };
 
 /// A user's own cost of states: the cost of a path is that of its steps plus that of the states of
-/// all its layers, the first and the last included.
+/// all its layers, the first and the last included. Transitions between strokes cost what their
+/// moves do.
 class StateCost : public Hook {
  public:
   /// Sets costs[k] to the cost of states[k], from 0 to 1000 times Lattice::cost_unit (1 where all

@@ -8,6 +8,7 @@
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/problem/problem.hpp"
 #include "swivel/planner/job/check_job.hpp"
+#include "swivel/planner/job/refine_job.hpp"
 #include "swivel/planner/plan/plan_options.hpp"
 #include "swivel/planner/robot/motion_defaults.hpp"
 
@@ -27,18 +28,38 @@ void require_speeds(const Problem& job, const TimingOptions& options);
 /// timed by time_joint_moves(). The tool rests between parts and at the corners of transitions. The
 /// job is completed by with_motion_defaults(). Throws InputError where a stroke has no speed or a
 /// joint no speed limit, InvalidArgument as plan_job() does, for parts that are not those of the
-/// job, for a rate or a speed that is none, and for TimingOptions::speeds and chord; Stopped.
+/// job, for a rate or a speed that is none, and for TimingOptions::speeds; Stopped.
 [[nodiscard]] MotionTiming time_job(const PreparedRobot& robot, const Problem& job,
                                     const std::vector<Part>& parts, const TimingOptions& options,
                                     const Budget& budget = {});
 
-/// Plans a job completed by with_motion_defaults(), and times it. A job whose cheapest runs jump
-/// from branch to branch at a singularity is planned again without such steps, if that is possible.
-/// The time-out of `options` covers everything. Throws as plan_job() and time_job() do, InputError
-/// of a stroke without a speed before planning. `view`, if given, gets what was found out about the
-/// runs. Answer::motion has the motion in time, where there is a job, unless Answer::stopped.
+/// Parts of a job whose runs were refined, and their motion in time.
+struct RefinedJobMotion {
+  std::vector<Part> parts;
+  RefinedRuns refinement;
+  MotionTiming timing;
+  double refine_ms = 0;  ///< spent on refining
+};
+/// Refines the runs among parts as refine_job() does, and times the parts as time_job() does. Where
+/// bodies come too near between samples of a run, that run is refined again with more clearance at
+/// rows. Throws as both do.
+[[nodiscard]] RefinedJobMotion refine_and_time_job(const PreparedRobot& robot, const Problem& job,
+                                                   std::vector<Part> parts,
+                                                   const TimingOptions& options,
+                                                   const RefineOptions& refining = {},
+                                                   const Budget& budget = {});
+
+/// Plans a job, then refines its runs if `refined` is true, and times it if `timing` is set: all
+/// within the time-out of `options`, and proved if options.check. A job to be timed is completed by
+/// with_motion_defaults(), and where its cheapest runs jump from branch to branch at a singularity,
+/// planned again without such steps, if that is possible; for one to be refined alone,
+/// keep_clearance_between_layers() should have been applied to the limits of its strokes. Answer
+/// has refinement and motion where there is a job, unless Answer::stopped. Throws as plan_job() and
+/// time_job() do, InputError of a stroke without a speed before planning. `view`, if given, gets
+/// what was found out about the runs.
 [[nodiscard]] Answer plan_job_motion(const PreparedRobot& robot, const Problem& job,
-                                     const PlanOptions& options, const TimingOptions& timing,
+                                     const PlanOptions& options, bool refined,
+                                     const std::optional<TimingOptions>& timing,
                                      ProblemView* view = nullptr);
 
 }  // namespace swivel

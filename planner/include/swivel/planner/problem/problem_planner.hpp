@@ -19,7 +19,7 @@ class PreparedWorkcell;
 
 /// What is asked of a plan besides the rows at the layers.
 struct MotionRequest {
-  bool refine = false;  ///< moves the rows off the lattice's nodes; not of strokes
+  bool refine = false;  ///< moves the rows off the lattice's nodes
   /// Set: a motion in time is made. For strokes `speed` may be 0: each has its own.
   std::optional<TimingOptions> timing;
 };

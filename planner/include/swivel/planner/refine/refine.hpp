@@ -35,6 +35,8 @@ struct RefineOptions {
   /// Clearance at layers in addition to what each pair must keep, m, except where the given path
   /// itself lacks it. Optima lie on the bound, and the motion between layers comes a little nearer.
   double extra_clearance = 0.1e-3;
+  /// Whether the first row, and the last, stay as they are given. Those of a closed path do anyway.
+  bool keeps_begin = false, keeps_end = false;
   /// The caller's own rule for states at layers and the motions between them, or null.
   std::shared_ptr<StateCheck> check = nullptr;  // shared: with the plan and its caller
   /// What else rows must keep, or null. The given rows keep it.

@@ -15,7 +15,7 @@ namespace swivel {
 /// plan_workcell(). `extra_clearance`: RefineOptions::extra_clearance of both arms, m, between the
 /// arms as well. Throws as refine() does, InputError where the motion of an arm is given, and
 /// Stopped.
-[[nodiscard]] RefinedArms refine_workcell(const PreparedWorkcell& prepared,
+[[nodiscard]] RefinedRuns refine_workcell(const PreparedWorkcell& prepared,
                                           const std::array<std::vector<TrajectoryRow>, 2>& rows,
                                           const Budget& budget = {},
                                           double extra_clearance = RefineOptions{}.extra_clearance);

@@ -37,7 +37,7 @@ namespace swivel {
 
 /// Refined trajectories of both arms, and their motion in time.
 struct RefinedWorkcellMotion {
-  RefinedArms refinement;
+  RefinedRuns refinement;
   MotionTiming timing;
   double refine_ms = 0;  ///< spent on refining
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "job/plan_lift_offs.hpp"
+#include "job/lift_offs/plan_lift_offs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "job/lift_search.hpp"
+#include "job/lift_offs/lift_search.hpp"
 #include "plan/answer.hpp"
 #include "plan/search.hpp"
 #include "plan/stopwatch.hpp"
@@ -79,8 +79,9 @@ class LiftPlan {
       CutStroke& stroke = strokes_.emplace_back();
       stroke.search = std::make_unique<LiftSearch>(
           robot_, job_, run.run.stroke,
-          options_.fcl_alone ? DistanceProofs::kOff : DistanceProofs::kOn,
-          options_.planner == PlannerKind::kLazy ? 1 : options_.threads, budget_);
+          options_.fcl_alone ? DistanceProofs::kOff : DistanceProofs::kOn, options_.hooks.check,
+          options_.planner == PlannerKind::kLazy || options_.hooks.check ? 1 : options_.threads,
+          budget_);
       const std::optional<int> least = stroke.search->least();
       stroke.count = std::max(1, least.value_or(1));
       const auto places = least ? stroke.search->next(stroke.count) : std::nullopt;

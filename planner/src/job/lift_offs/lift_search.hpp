@@ -7,6 +7,7 @@
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/lattice/lattice.hpp"
+#include "swivel/core/problem/hooks.hpp"
 #include "swivel/core/problem/problem.hpp"
 #include "swivel/graph/eager/cut_program.hpp"
 #include "swivel/parallel/executor.hpp"
@@ -19,11 +20,13 @@ namespace swivel {
 /// stroke's approach and retract.
 class LiftSearch {
  public:
-  /// Asks about all nodes and edges of the stroke's lattice. Both references must outlive this.
+  /// Asks about all nodes and edges of the stroke's lattice, `check` (the caller's own rule, or
+  /// null) among others, beside which `threads` must be 1. Both references must outlive this.
   /// Throws InputError for an arm whose roll and arm angle are both free and for a stroke of more
   /// than 5000 layers, and Stopped.
   LiftSearch(const PreparedRobot& robot, const Problem& job, std::size_t stroke,
-             DistanceProofs proofs, int threads, const Budget& budget);
+             DistanceProofs proofs, std::shared_ptr<StateCheck> check, int threads,
+             const Budget& budget);
 
   /// Returns the least number of lift-offs; none where no number suffices.
   [[nodiscard]] std::optional<int> least() const { return least_; }
@@ -55,6 +58,7 @@ class LiftSearch {
   const Problem* job_;
   std::size_t stroke_;
   DistanceProofs proofs_;
+  Hooks hooks_;
   Budget budget_;
   PathProblem problem_;  // of the stroke without approach and retract, with sharp corners
   World world_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "job/lift_search.hpp"
+#include "job/lift_offs/lift_search.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +12,7 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/graph/cost_to_go/cost_to_go.hpp"
 #include "validity/collision_validity.hpp"
+#include "validity/hooked_validity.hpp"
 
 namespace swivel {
 
@@ -48,11 +49,13 @@ void require_cuttable(const PreparedRobot& robot, const PathProblem& problem,
 }  // namespace
 
 LiftSearch::LiftSearch(const PreparedRobot& robot, const Problem& job, std::size_t stroke,
-                       DistanceProofs proofs, int threads, const Budget& budget)
+                       DistanceProofs proofs, std::shared_ptr<StateCheck> check, int threads,
+                       const Budget& budget)
     : robot_(&robot),
       job_(&job),
       stroke_(stroke),
       proofs_(proofs),
+      hooks_{std::move(check), nullptr},
       budget_(budget),
       problem_(bare_problem(job, stroke)),
       world_(robot.world(), problem_, budget),
@@ -63,7 +66,8 @@ LiftSearch::LiftSearch(const PreparedRobot& robot, const Problem& job, std::size
       make_lattice(robot.arm().chain, robot.arm_class(), path_, problem_, budget));
   CollisionValidity validity(*lattice_, world_, world_.edge_rule(robot.radii()),
                              problem_.limits.edges, proofs_, executor_, 0, budget_);
-  program_.emplace(*lattice_, validity, budget_);
+  HookedValidity hooked(*lattice_, validity, hooks_, budget_);
+  program_.emplace(*lattice_, hooked, budget_);
   find_places(job.arm().lift->overlap);
   begin_known_.resize(places_.size());
   end_known_.resize(places_.size());
@@ -156,7 +160,8 @@ std::vector<double> LiftSearch::line_costs(int layer, const Vector3d& offset) {
       make_lattice(robot_->arm().chain, robot_->arm_class(), path, line, budget_));
   CollisionValidity validity(*lattice, world_, world_.edge_rule(robot_->radii()), line.limits.edges,
                              proofs_, executor_, 0, budget_);
-  const CostsToEnd line_ends = costs_to_end(*lattice, validity, budget_);
+  HookedValidity hooked(*lattice, validity, hooks_, budget_);
+  const CostsToEnd line_ends = costs_to_end(*lattice, hooked, budget_);
   std::vector<double> costs;
   constexpr double kSameJoints = 1e-6;  // rad
   for (const Lattice::Node& node : program_->nodes(layer)) {
