@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "swivel/core/problem/validate.hpp"
 #include "swivel/planner/certificate/infeasibility_certificate.hpp"
 #include "swivel/planner/job/time_job.hpp"
 #include "swivel/planner/plan/planner.hpp"
@@ -35,9 +36,12 @@ struct ProblemPlanner::Impl {
 
   Impl(Problem p, MotionRequest a) : problem(completed(std::move(p), a)), asked(std::move(a)) {}
   virtual ~Impl() = default;
+  /// Replaces the problem by one of the same kind, already completed. Returns false, and changes
+  /// nothing, where nothing of this planner serves it.
+  virtual bool take(Problem& next, const Budget& budget) = 0;
   virtual Answer plan(const PlanOptions& options, bool keeps_view) = 0;
   [[nodiscard]] virtual AdviceList advise(const Answer& answer,
-                                         const PlanOptions& options) const = 0;
+                                          const PlanOptions& options) const = 0;
   [[nodiscard]] virtual std::optional<AnyCertificate> prove(Answer& answer,
                                                             const Budget& budget) const = 0;
   [[nodiscard]] virtual const PreparedRobot& robot() const = 0;
@@ -50,6 +54,13 @@ struct ProblemPlanner::OfPath : Impl {
   OfPath(Problem p, MotionRequest a)
       : Impl(std::move(p), std::move(a)), planner(problem_of_run(problem, {0, false})) {}
 
+  bool take(Problem& next, const Budget& budget) override {
+    if (!is_path(next)) return false;
+    PathProblem path = problem_of_run(next, {0, false});
+    if (planner.prepare(budget).difference_from(path) != nullptr) return false;
+    planner.set_problem(std::move(path));
+    return true;
+  }
   Answer plan(const PlanOptions& options, bool keeps_view) override {
     view = {};
     Answer answer =
@@ -76,6 +87,11 @@ struct ProblemPlanner::OfStrokes : Impl {
   OfStrokes(Problem p, MotionRequest a, const Budget& budget)
       : Impl(std::move(p), std::move(a)), prepared(problem_of_run(problem, {0, false}), budget) {}
 
+  bool take(Problem& next, const Budget& /*budget*/) override {
+    if (next.arms.size() != 1 || is_path(next)) return false;
+    validate(next);
+    return prepared.difference_from(next.arm()) == nullptr;
+  }
   Answer plan(const PlanOptions& options, bool keeps_view) override {
     view = {};
     ProblemView* const kept = keeps_view ? &view : nullptr;
@@ -120,6 +136,13 @@ struct ProblemPlanner::OfTwoArms : Impl {
   OfTwoArms(Problem p, MotionRequest a, const Budget& budget)
       : Impl(std::move(p), std::move(a)), prepared(problem, budget) {}
 
+  bool take(Problem& next, const Budget& budget) override {
+    if (next.arms.size() != 2) return false;
+    PreparedWorkcell made(prepared, next, budget);
+    view = {};  // refers to what was prepared before
+    prepared = std::move(made);
+    return true;
+  }
   Answer plan(const PlanOptions& options, bool keeps_view) override {
     view = {};
     return plan_workcell_motion(prepared, options, asked.refine, asked.timing,
@@ -134,6 +157,16 @@ struct ProblemPlanner::OfTwoArms : Impl {
   }
   [[nodiscard]] const PreparedRobot& robot() const override { return prepared.robot(0); }
 };
+
+void ProblemPlanner::set_problem(Problem problem, const Budget& budget) {
+  Problem next = completed(problem, impl_->asked);
+  if (!impl_->take(next, budget)) {
+    *this = ProblemPlanner(std::move(problem), impl_->asked, budget);
+    return;
+  }
+  impl_->view = {};
+  impl_->problem = std::move(next);
+}
 
 ProblemPlanner::ProblemPlanner(Problem problem, MotionRequest asked, const Budget& budget) {
   if (problem.arms.size() == 2)

@@ -88,22 +88,25 @@ const SrsArm& PreparedRobot::srs(const char* what) const {
   return *impl_->arm.kind.srs;
 }
 
+const char* PreparedRobot::difference_from(const Robot& robot) const {
+  const Robot& own = impl_->basis;
+  if (robot.model != own.model) return "model";
+  if (robot.base_link != own.base_link) return "base_link";
+  if (robot.tip_link != own.tip_link) return "tip_link";
+  if (robot.tool.matrix() != own.tool.matrix()) return "tool";
+  if (robot.hold != own.hold) return "hold";
+  if (robot.roll != own.roll) return "roll";
+  if (!std::equal(robot.attached.begin(), robot.attached.end(), own.attached.begin(),
+                  own.attached.end(), same))
+    return "attached";
+  return nullptr;
+}
+
 void PreparedRobot::require_prepared_for(const PathProblem& problem) const {
-  const auto require = [&](bool holds, const char* what) {
-    if (!holds)
-      throw InvalidArgument((problem.source.empty() ? "" : problem.source + ": ") + what +
-                            " differs from what the robot was prepared for: allowed is a "
-                            "PreparedRobot made of this problem");
-  };
-  require(problem.model == impl_->basis.model, "model");
-  require(problem.base_link == impl_->basis.base_link, "base_link");
-  require(problem.tip_link == impl_->basis.tip_link, "tip_link");
-  require(problem.tool.matrix() == impl_->basis.tool.matrix(), "tool");
-  require(problem.hold == impl_->basis.hold, "hold");
-  require(problem.roll == impl_->basis.roll, "roll");
-  require(std::equal(problem.attached.begin(), problem.attached.end(),
-                     impl_->basis.attached.begin(), impl_->basis.attached.end(), same),
-          "attached");
+  if (const char* const what = difference_from(problem))
+    throw InvalidArgument((problem.source.empty() ? "" : problem.source + ": ") + what +
+                          " differs from what the robot was prepared for: allowed is a "
+                          "PreparedRobot made of this problem");
 }
 
 }  // namespace swivel

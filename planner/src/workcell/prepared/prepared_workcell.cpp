@@ -44,12 +44,13 @@ struct PreparedWorkcell::Impl {
   std::vector<std::array<std::string, 2>> may_touch;
   ArmProblems of_arms;
   const std::array<PathProblem, 2>& problems;
-  std::array<PreparedRobot, 2> robots;
+  std::array<std::shared_ptr<const PreparedRobot>, 2> robots;  // shared by workcells alike
   InterArmWorld between;
   std::optional<std::size_t> given_arm;
   std::vector<TrajectoryRow> given_rows;
 
-  Impl(const Problem& cell, const Budget& budget)
+  /// `like`: a workcell whose robots are taken where they are the same; or null.
+  Impl(const Impl* like, const Problem& cell, const Budget& budget)
       : names{cell.arms[0].name, cell.arms[1].name},
         follower(cell.leader_of(0) >= 0   ? 0
                  : cell.leader_of(1) >= 0 ? 1
@@ -58,11 +59,11 @@ struct PreparedWorkcell::Impl {
         may_touch(cell.may_touch),
         of_arms(problems_of_arms(cell, budget)),
         problems(of_arms.problems),
-        robots{PreparedRobot(problems[0], budget), PreparedRobot(problems[1], budget)},
+        robots(robots_of(like, budget)),
         between(world(problems[0].limits, problems[1].limits, budget)),
         given_arm(cell.given_arm()) {
     if (!given_arm) return;
-    const PreparedRobot& robot = robots[*given_arm];
+    const PreparedRobot& robot = *robots[*given_arm];
     given_rows = rows_along(cell.arms[*given_arm].given,
                             path_within_scale(problems[*given_arm], robot.arm().chain, budget));
     given_rows = complete_rows(robot, problems[*given_arm], std::move(given_rows),
@@ -71,11 +72,28 @@ struct PreparedWorkcell::Impl {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
+  /// Returns the prepared robots of both arms. Robots whose links an arm moves are those of the
+  /// whole model without the other arm's, so that both arms are taken from `like`, or none.
+  [[nodiscard]] std::array<std::shared_ptr<const PreparedRobot>, 2> robots_of(
+      const Impl* like, const Budget& budget) {
+    if (like != nullptr && like->model == model) {
+      std::array<PathProblem, 2> same = of_arms.problems;
+      for (std::size_t k = 0; k < 2; ++k) same[k].model = like->problems[k].model;
+      if (like->robots[0]->difference_from(same[0]) == nullptr &&
+          like->robots[1]->difference_from(same[1]) == nullptr) {
+        of_arms.problems = std::move(same);
+        return like->robots;
+      }
+    }
+    return {std::make_shared<const PreparedRobot>(of_arms.problems[0], budget),
+            std::make_shared<const PreparedRobot>(of_arms.problems[1], budget)};
+  }
+
   /// Returns the world between the arms with what their limits keep.
   [[nodiscard]] InterArmWorld world(const Limits& a, const Limits& b, const Budget& budget) const {
     return InterArmWorld(*model,
-                         {ArmInPair{&robots[0].arm(), &problems[0].attached},
-                          ArmInPair{&robots[1].arm(), &problems[1].attached}},
+                         {ArmInPair{&robots[0]->arm(), &problems[0].attached},
+                          ArmInPair{&robots[1]->arm(), &problems[1].attached}},
                          may_touch, stricter(a, b), budget);
   }
 };
@@ -90,7 +108,10 @@ const Problem& checked(const Problem& cell) {
 }  // namespace
 
 PreparedWorkcell::PreparedWorkcell(const Problem& cell, const Budget& budget)
-    : impl_(std::make_unique<const Impl>(checked(cell), budget)) {}
+    : impl_(std::make_unique<const Impl>(nullptr, checked(cell), budget)) {}
+PreparedWorkcell::PreparedWorkcell(const PreparedWorkcell& like, const Problem& cell,
+                                   const Budget& budget)
+    : impl_(std::make_unique<const Impl>(like.impl_.get(), checked(cell), budget)) {}
 PreparedWorkcell::~PreparedWorkcell() = default;
 PreparedWorkcell::PreparedWorkcell(PreparedWorkcell&&) noexcept = default;
 PreparedWorkcell& PreparedWorkcell::operator=(PreparedWorkcell&&) noexcept = default;
@@ -102,7 +123,7 @@ const PathProblem& PreparedWorkcell::problem(std::size_t arm) const {
   return impl_->problems[arm];
 }
 const PreparedRobot& PreparedWorkcell::robot(std::size_t arm) const {
-  return impl_->robots[arm];
+  return *impl_->robots[arm];
 }
 const InterArmWorld& PreparedWorkcell::between() const {
   return impl_->between;

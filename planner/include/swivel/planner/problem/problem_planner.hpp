@@ -39,6 +39,11 @@ class ProblemPlanner {
   ProblemPlanner(ProblemPlanner&&) noexcept;
   ProblemPlanner& operator=(ProblemPlanner&&) noexcept;
 
+  /// Replaces the problem, which is completed as by the constructor. What is known of a robot that
+  /// stays is kept, and of one path all that Planner keeps: so objects that move, another home,
+  /// start or part take less time. The next plan is that of a new planner, but for its counters.
+  /// Throws as the constructor does, and changes nothing then.
+  void set_problem(Problem problem, const Budget& budget = {});
   /// Returns the problem as it is planned.
   [[nodiscard]] const Problem& problem() const;
   /// Plans as plan_motion(), plan_job_motion() and plan_workcell_motion() do, and throws as they

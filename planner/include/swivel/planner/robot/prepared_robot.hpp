@@ -35,6 +35,8 @@ class PreparedRobot {
   /// Throws InvalidArgument if the problem needs another PreparedRobot: its model, base_link,
   /// tip_link, tool, hold, roll or an attached body differs. Limits may differ.
   void require_prepared_for(const PathProblem& problem) const;
+  /// Returns the name of what differs, such that another PreparedRobot is needed; null: nothing.
+  [[nodiscard]] const char* difference_from(const Robot& robot) const;
   /// Returns the kinematic chain of the arm and which links move with it.
   [[nodiscard]] const ArmModel& arm() const;
   /// Returns the class of the arm, which says how its self-motion is computed.

@@ -26,6 +26,9 @@ class PreparedWorkcell {
   /// tool stands still in the base frame on a step, a given motion whose tool stands still on one,
   /// and a roll that is chosen besides the arm angle; Stopped.
   explicit PreparedWorkcell(const Problem& cell, const Budget& budget = {});
+  /// Prepares both arms, with the robots of another workcell where these are the same. Throws as
+  /// the constructor above.
+  PreparedWorkcell(const PreparedWorkcell& like, const Problem& cell, const Budget& budget = {});
   ~PreparedWorkcell();
   PreparedWorkcell(PreparedWorkcell&&) noexcept;
   PreparedWorkcell& operator=(PreparedWorkcell&&) noexcept;
