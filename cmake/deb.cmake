@@ -87,7 +87,7 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
 
 set(manual ${PROJECT_BINARY_DIR}/deb/swivel.1)
 add_custom_command(OUTPUT ${manual}.gz
-  COMMAND ${SWIVEL_HELP2MAN} --no-info --version-string=${PROJECT_VERSION}
+  COMMAND ${SWIVEL_HELP2MAN} --no-info --help-option=--help-all --version-string=${PROJECT_VERSION}
     --name=${PROJECT_DESCRIPTION} --output=${manual} $<TARGET_FILE:swivel>
   COMMAND gzip -9 -n -f ${manual} DEPENDS swivel VERBATIM)
 add_custom_target(swivel_manual ALL DEPENDS ${manual}.gz)

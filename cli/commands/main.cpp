@@ -102,6 +102,9 @@ int run(int argc, char** argv) {
   add_info(app, exit_code);
   add_fit(app, exit_code);
   add_schema(app, exit_code);
+  add_completion(app, exit_code);
+  app.set_help_all_flag("--help-all", "Print the help of all commands and exit");
+  app.footer(exit_codes_text());
   refuse_odd_values(app);
   try {
     app.parse(argc, argv);
@@ -114,6 +117,13 @@ int run(int argc, char** argv) {
 }
 
 }  // namespace
+
+std::string exit_codes_text() {
+  std::string text = "Exit codes:\n";
+  for (const auto& [code, meaning] : kExitCodes)
+    text += "  " + std::to_string(code) + "  " + meaning + '\n';
+  return text;
+}
 
 void flush_standard_output() {
   errno = 0;

@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "options/placement_options.hpp"
@@ -17,8 +18,17 @@
 
 namespace swivel::cli {
 
-/// Exit codes; the README lists them.
-enum ExitCode { kOk = 0, kNo = 1, kBadInput = 2, kStopped = 3, kInternalError = 5 };
+enum ExitCode { kOk = 0, kNo = 1, kBadInput = 2, kStopped = 3, kNoSetUp = 4, kInternalError = 5 };
+/// What each exit code says. The README lists them as well.
+inline constexpr std::pair<ExitCode, const char*> kExitCodes[] = {
+    {kOk, "solved, or passed"},
+    {kNo, "no path, or failed"},
+    {kBadInput, "bad input: one line says where, what, and what is allowed"},
+    {kStopped, "time-out, or cancelled"},
+    {kNoSetUp, "set-up failed (of the script that builds the program)"},
+    {kInternalError, "an internal error: please report it"}};
+/// Returns kExitCodes for people.
+[[nodiscard]] std::string exit_codes_text();
 
 /// Each function adds a subcommand to `app`. The callback of the subcommand sets `exit_code`.
 void add_plan(CLI::App& app, int& exit_code);
@@ -30,6 +40,9 @@ void add_time(CLI::App& app, int& exit_code);
 void add_info(CLI::App& app, int& exit_code);
 void add_fit(CLI::App& app, int& exit_code);
 void add_schema(CLI::App& app, int& exit_code);
+/// Adds the command that prints a completion script of all commands of `app`, which must live as
+/// long as it.
+void add_completion(CLI::App& app, int& exit_code);
 
 /// The options by which plan, check and time can be asked for one episode of a campaign or for one
 /// placement.
