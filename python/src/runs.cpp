@@ -141,6 +141,9 @@ py::class_<Table<Row>> bind_table(py::module_& m, const char* type, const char* 
           "save",
           [](const Rows& t, const std::filesystem::path& file) { io::write_file(file, to_csv(t)); },
           py::arg("file"), "As CSV, docs/formats.md: what the program writes.")
+      .def(
+          "to_csv", [](const Rows& t) { return to_csv(t); },
+          "All rows as CSV, docs/formats.md: what the program writes.")
       .def_static("_joined", &joined<Row>)  // used by place() and campaign() of the package
       .def("__repr__", [name = std::string(type)](const Rows& t) {
         return "<" + name + ": " + table_words(t) + ">";

@@ -112,6 +112,18 @@ def _to_dataframe(self) -> Any:
     return pandas.DataFrame({name: np.array(column) for name, column in _columns(self).items()})
 
 
+def _table(self) -> Any:
+    """Returns a pandas.DataFrame with the rows and columns of to_csv().
+
+    Lengths are in m, angles in rad and times in s; what is empty in the file is NaN. Needs pandas.
+    """
+    import io
+
+    import pandas
+
+    return pandas.read_csv(io.StringIO(self.to_csv()), float_precision="round_trip")
+
+
 def extend():
     """Gives the classes of the module what is written in this file."""
     for kind in (_swivel.Trajectory, _swivel.Motion):
@@ -124,3 +136,5 @@ def extend():
             setattr(kind, name, method)
         # Without this, pandas would take the array and lose the names of the columns.
         collections.abc.Sequence.register(kind)
+    for kind in (_swivel.Answer, _swivel.Placements, _swivel.Episodes):
+        kind.to_dataframe = _table

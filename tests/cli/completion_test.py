@@ -88,7 +88,8 @@ class Completion(unittest.TestCase):
     def test_exit_codes(self):
         told = dict(re.findall(r"^  (\d)  (.*)$", swivel("--help").split("Exit codes:\n")[1],
                                re.MULTILINE))
-        readme = " ".join(README.read_text().split()).split("Exit codes: ")[1].split(" report it")[0]
+        readme = " ".join(README.read_text().split())
+        readme = readme.split("Exit codes: ")[1].split(" report it")[0]
         self.assertEqual(
             [int(code) for code in re.findall(r"(?:^|, )(\d) ", readme)], [*map(int, told)]
         )

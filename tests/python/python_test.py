@@ -1647,7 +1647,8 @@ class Stubs(unittest.TestCase):
         from stubs import MAYBE
 
         anything = MAYBE | {
-            "Trajectory.to_dataframe", "Motion.to_dataframe", "Trajectory.__array__",
+            "Trajectory.to_dataframe", "Motion.to_dataframe", "Answer.to_dataframe",
+            "Placements.to_dataframe", "Episodes.to_dataframe", "Trajectory.__array__",
             "Motion.__array__", "Answer.report", "Answer.map_svg", "report", "map_svg",
             "campaign", "place", "compute_cartesian_path", "load_trajectory"
         }

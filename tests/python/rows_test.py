@@ -119,6 +119,34 @@ class Rows(unittest.TestCase):
         self.assertEqual(list(frame.columns), list(pandas.DataFrame(motion).columns))
         frame.loc[0, "t"] = 5  # a copy, which may be written
 
+    def test_tables_of_answers_and_studies(self):
+        try:
+            import pandas
+        except ImportError:
+            self.skipTest("pandas (python3-pandas) is not installed")
+        problems = DATA / "problems"
+        job = swivel.plan(problems / "door_job.yaml")
+        frame = job.to_dataframe()
+        self.assertEqual(len(frame), sum(len(part.joints) for part in job.parts))
+        self.assertEqual(
+            sorted(frame["stroke"].dropna().unique()), sorted(run.stroke for run in job.runs)
+        )
+        self.assertTrue(frame["s"].isna().any())  # in transitions
+        cell = swivel.plan(problems / "sda10f_plate_workcell.yaml")
+        frame = cell.to_dataframe()
+        np.testing.assert_array_equal(frame["s_left"], cell.arms["left"].trajectory.s)
+        path = swivel.plan(problems / "experiment_c.yaml")
+        np.testing.assert_array_equal(path.to_dataframe()["s"], path.trajectory.s)
+        episodes = swivel.campaign(problems / "door_job.yaml", episodes=3)
+        frame = episodes.to_dataframe()
+        self.assertEqual(list(frame["episode"]), [0, 1, 2])
+        np.testing.assert_allclose(frame["cost"], episodes.cost)
+        placements = swivel.place(problems / "experiment_c.yaml", base=True, x=(0, 0.1, 0.05))
+        frame = placements.to_dataframe()
+        np.testing.assert_array_equal(frame["cell"], placements.cell)
+        np.testing.assert_allclose(frame["x"], [0, 0.05, 0.1])
+        self.assertIsInstance(frame, pandas.DataFrame)
+
 
 class HalfTurns(unittest.TestCase):
     """A tool that may turn freely about its z axis passes half turns, as in files."""
