@@ -132,7 +132,7 @@ TEST(Packed, PosesComeBack) {
     }
     ASSERT_EQ(back, values) << "trial " << trial;
   }
-  EXPECT_GE(by_bend, at_least(5000));
+  EXPECT_GE(by_bend, at_least(2500));
   EXPECT_GE(by_slope, at_least(1000));
   EXPECT_GE(others, at_least(1000));
 }
