@@ -2,6 +2,7 @@
 // Bindings of the planner, with the caller's own checks and costs.
 #include "swivel/planner/plan/planner.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <optional>
 #include <variant>
@@ -16,7 +17,9 @@
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
+#include "swivel/core/problem/validate.hpp"
 #include "swivel/planner/measure/measure.hpp"
+#include "swivel/planner/problem/problem_planner.hpp"
 #include "swivel/planner/refine/motion.hpp"
 #include "swivel/planner/refine/refine.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
@@ -35,6 +38,77 @@ PathProblem problem_of(const Robot& robot, const std::optional<Task>& task,
   pass_half_turns(problem, problem.waypoints);
   for (const py::handle object : scene) problem.scene.push_back(object.cast<const SceneObject&>());
   return problem;
+}
+
+/// Plans a problem with strokes or two arms again and again.
+class KeptProblem {
+ public:
+  explicit KeptProblem(swivel::Problem problem) : problem_(std::move(problem)) {
+    validate(problem_);
+  }
+  [[nodiscard]] const swivel::Problem& problem() const { return problem_; }
+  void set_problem(swivel::Problem problem) {
+    validate(problem);
+    problem_ = std::move(problem);
+  }
+  template <class Change>
+  void change_scene(const Change& change) {
+    swivel::Problem changed = problem_;
+    change(changed.scene);
+    set_problem(std::move(changed));
+  }
+  void prepare() {
+    interruptible([&](const std::stop_token& stop) {
+      take({}, Budget({}, nullptr, stop));
+      return &*planner_;
+    });
+  }
+  Answer plan(const PlanKeywords& keywords, bool refined, const MotionKeywords& motion) {
+    PlanOptions options = keywords.options();
+    const MotionRequest asked{refined, motion.asked_timing(problem_)};
+    Answer answer = made_answer(interruptible([&](const std::stop_token& stop) {
+                                  options.stop = stop;
+                                  take(asked, Budget({}, nullptr, stop));
+                                  return planner_->plan(options);
+                                }),
+                                problem_, asked);
+    answer.own_functions = keywords.has_own_functions();
+    return answer;
+  }
+  AdviceList advise(const Answer& answer, double timeout) {
+    static_cast<void>(to_timeout(timeout));
+    if (answer.found->arms.size() != problem_.arms.size() ||
+        answer.has_paths() != (problem_.arms.size() == 2))
+      throw InvalidArgument("plan: is of another problem: allowed is an answer to this one");
+    return interruptible([&](const std::stop_token& stop) {
+      PlanOptions options;
+      options.timeout_s = timeout;
+      options.stop = stop;
+      take({}, Budget({}, nullptr, stop));
+      return planner_->advise(*answer.found, options);
+    });
+  }
+
+ private:
+  /// Makes planner_ one of the problem as it is now.
+  void take(const MotionRequest& asked, const Budget& budget) {
+    if (planner_)
+      planner_->set_problem(problem_, asked, budget);
+    else
+      planner_.emplace(problem_, asked, budget);
+  }
+  swivel::Problem problem_;
+  std::optional<ProblemPlanner> planner_;
+};
+
+/// Returns the place of an object in a scene. Throws InvalidArgument for an unknown name.
+std::vector<SceneObject>::iterator object_in(std::vector<SceneObject>& scene,
+                                             const std::string& name) {
+  const auto found = std::find_if(scene.begin(), scene.end(),
+                                  [&](const SceneObject& object) { return object.name == name; });
+  if (found == scene.end())
+    throw InvalidArgument("'" + name + "': no such object: allowed are names of the scene");
+  return found;
 }
 
 /// A planner for one thread at a time; a second thread gets a RuntimeError meanwhile. The planner's
@@ -60,40 +134,64 @@ class SharedPlanner {
   auto prepared(const Work& work, std::optional<double> timeout = {}) {
     const Use use(*this);
     static_cast<void>(to_timeout(timeout));
-    planner_.set_task(task_);
+    of_path().set_task(task_);
     return interruptible([&](const std::stop_token& stop) {
       const Budget budget(timeout, nullptr, stop);
-      return work(planner_.prepare(budget), planner_.problem(), budget);
+      return work(of_path().prepare(budget), of_path().problem(), budget);
     });
   }
 
  public:
-  explicit SharedPlanner(Planner planner)
-      : planner_(std::move(planner)), task_(planner_.problem()) {}
+  explicit SharedPlanner(Planner planner) : path_(std::move(planner)), task_(path_->problem()) {}
+  /// Plans a problem of any kind.
+  explicit SharedPlanner(const Problem& problem) { take(problem); }
 
+  /// Returns a copy of the problem, of any kind.
+  [[nodiscard]] Problem whole_problem() {
+    if (path_) return Problem(problem());
+    const Use use(*this);
+    return from_core(kept_->problem());
+  }
   [[nodiscard]] PathProblem problem() {
     const Use use(*this);
-    PathProblem problem = planner_.problem();
+    PathProblem problem = of_path().problem();
     static_cast<Task&>(problem) = task_;
     return problem;
   }
   [[nodiscard]] bool in_use() const { return in_use_; }
   [[nodiscard]] std::unique_ptr<SharedPlanner> clone() {
+    if (!path_) return std::make_unique<SharedPlanner>(whole_problem());
     const Use use(*this);
-    planner_.set_task(task_);
-    return std::make_unique<SharedPlanner>(planner_.clone());
+    of_path().set_task(task_);
+    return std::make_unique<SharedPlanner>(of_path().clone());
   }
   void set_task(Task task) {
     const Use use(*this);
-    pass_half_turns(planner_.problem(), task.waypoints);
-    planner_.set_task(task);
-    task_ = planner_.problem();
+    pass_half_turns(of_path().problem(), task.waypoints);
+    of_path().set_task(task);
+    task_ = of_path().problem();
+  }
+  /// Prepares a problem with strokes or two arms. Returns false for one path.
+  bool prepare_kept() {
+    const Use use(*this);
+    if (kept_) kept_->prepare();
+    return kept_.has_value();
   }
   /// Applies a change of robot or scene.
   template <class Change>
   void change(const Change& change) {
     const Use use(*this);
-    change(planner_);
+    change(of_path());
+  }
+  void set_problem(const Problem& problem) {
+    const Use use(*this);
+    take(problem);
+  }
+  /// Applies a change to the scene: as `of_path` does it of one path, else as `of_scene` does it.
+  template <class OfPath, class OfScene>
+  void change_scene(const OfPath& of_path, const OfScene& of_scene) {
+    const Use use(*this);
+    path_ ? of_path(*path_) : kept_->change_scene(of_scene);
   }
   /// Returns the number of rows that a trajectory of the whole path has.
   int rows_of_path() {
@@ -104,21 +202,22 @@ class SharedPlanner {
   }
   Answer plan(const PlanKeywords& keywords, bool refined, const MotionKeywords& motion) {
     const Use use(*this);
+    if (kept_) return kept_->plan(keywords, refined, motion);
     PlanOptions options = keywords.options();
-    planner_.set_task(task_);
-    const swivel::Problem given = one_path(planner_.problem());
+    of_path().set_task(task_);
+    const swivel::Problem given = one_path(of_path().problem());
     const MotionRequest asked{refined, motion.asked_timing(given)};
     if (asked.timing) {
-      planner_.set_task(with_motion_defaults(planner_.problem()));
+      of_path().set_task(with_motion_defaults(of_path().problem()));
     } else if (refined) {
       Task task = task_;
       keep_clearance_between_layers(task.limits);
-      planner_.set_task(task);
+      of_path().set_task(task);
     }
     Answer answer = made_answer(
         interruptible([&](const std::stop_token& stop) {
           options.stop = stop;
-          return answer_of(plan_motion(planner_, options, refined, asked.timing), asked.timing);
+          return answer_of(plan_motion(of_path(), options, refined, asked.timing), asked.timing);
         }),
         given, asked);
     answer.own_functions = keywords.has_own_functions();
@@ -175,19 +274,48 @@ class SharedPlanner {
   }
   AdviceList advise(const Answer& answer, double timeout) {
     const Use use(*this);
+    if (kept_) return kept_->advise(answer, timeout);
     require_path(answer, "advise");
     static_cast<void>(to_timeout(timeout));
-    planner_.set_task(task_);
+    of_path().set_task(task_);
     return interruptible([&](const std::stop_token& stop) {
       PlanOptions options;
       options.timeout_s = timeout;
       options.stop = stop;
-      return AdviceList{swivel::advise(planner_, answer.found->arm().run(), options), {}};
+      return AdviceList{swivel::advise(of_path(), answer.found->arm().run(), options), {}};
     });
   }
 
  private:
-  Planner planner_;
+  /// Returns the planner of one path. Throws InvalidArgument for a problem of another kind.
+  Planner& of_path() {
+    if (!path_)
+      throw InvalidArgument(
+          "this planner is of a problem with strokes or two arms: allowed are plan, advise, clone, "
+          "prepare, set_problem, set_scene, add, move and remove, and the functions of swivel");
+    return *path_;
+  }
+  /// Takes a problem of any kind; of one path keeps what serves it.
+  void take(const Problem& problem) {
+    swivel::Problem core = to_core(problem);
+    if (!is_path(core)) {
+      if (kept_) return kept_->set_problem(std::move(core));
+      kept_.emplace(std::move(core));
+      path_.reset();
+      return;
+    }
+    PathProblem path = problem_of_run(core, {0, false});
+    pass_half_turns(path, path.waypoints);
+    if (path_ && path_->prepare().difference_from(path) == nullptr)
+      path_->set_problem(std::move(path));
+    else
+      path_.emplace(std::move(path));
+    task_ = path_->problem();
+    kept_.reset();
+  }
+
+  std::optional<Planner> path_;      // of one path
+  std::optional<KeptProblem> kept_;  // of strokes and two arms, instead
   Task task_;
   std::atomic<bool> in_use_ = false;
 };
@@ -203,14 +331,14 @@ void bind_planner(py::module_& m) {
        {"lazy", PlannerKind::kLazy},
        {"parallel", PlannerKind::kParallel}});
   py::class_<SharedPlanner>(m, "Planner",
-                            "An arm that plans again and again. It holds scene and task, which may "
-                            "change between plans, and re-uses what did\n"
-                            "not change; answers never depend on the plans before. For one thread "
+                            "Plans a problem of any kind again and again. It holds scene and task, "
+                            "which may change between plans, and re-uses what did\n"
+                            "not change: of strokes and two arms the robot; answers never depend "
+                            "on the plans before. For one thread "
                             "at a time: others take a clone().")
-      .def(py::init([](const Problem& problem) {
-             return std::make_unique<SharedPlanner>(Planner(path_of(problem, "Planner")));
-           }),
-           py::arg("problem"), "problem: of one path. Raises InvalidArgument and InputError.")
+      .def(
+          py::init([](const Problem& problem) { return std::make_unique<SharedPlanner>(problem); }),
+          py::arg("problem"), "Raises InvalidArgument and InputError.")
       .def(
           py::init(
               [](const Robot& robot, const std::optional<Task>& task, const SceneObjects& scene) {
@@ -219,13 +347,17 @@ void bind_planner(py::module_& m) {
           py::arg("robot"), py::arg("task") = py::none(), py::arg("scene") = py::tuple(),
           "scene: a Scene, or any sequence of SceneObjects. Raises InvalidArgument and InputError.")
       .def_property_readonly(
-          "problem", [](SharedPlanner& self) { return Problem(self.problem()); },
+          "problem", [](SharedPlanner& self) { return self.whole_problem(); },
           "A copy of what it holds; change it with the methods below.")
+      .def("set_problem", &SharedPlanner::set_problem, py::arg("problem"),
+           "Replaces the problem by another of any kind: with another home, order, start or part, "
+           "say. Keeps what is known of a robot that stays.")
       .def("clone", &SharedPlanner::clone,
            "A planner of the same problem that remembers no plan, for another thread.")
       .def(
           "prepare",
           [](SharedPlanner& self) {
+            if (self.prepare_kept()) return;
             self.change([](Planner& planner) {
               interruptible([&](const std::stop_token& stop) {
                 return &planner.prepare(Budget({}, nullptr, stop));
@@ -241,26 +373,33 @@ void bind_planner(py::module_& m) {
             std::vector<SceneObject> objects;
             for (const py::handle object : scene)
               objects.push_back(object.cast<const SceneObject&>());
-            self.change([&](Planner& planner) { planner.set_scene(std::move(objects)); });
+            self.change_scene([&](Planner& planner) { planner.set_scene(std::move(objects)); },
+                              [&](std::vector<SceneObject>& all) { all = std::move(objects); });
           },
           py::arg("scene"))
       .def(
           "add",
           [](SharedPlanner& self, SceneObject object) {
-            self.change([&](Planner& planner) { planner.add(std::move(object)); });
+            self.change_scene(
+                [&](Planner& planner) { planner.add(std::move(object)); },
+                [&](std::vector<SceneObject>& all) { all.push_back(std::move(object)); });
           },
           py::arg("object"), "Adds a SceneObject.")
       .def(
           "move",
           [](SharedPlanner& self, const std::string& name, const Pose& pose) {
-            self.change([&](Planner& planner) { planner.move(name, pose); });
+            self.change_scene(
+                [&](Planner& planner) { planner.move(name, pose); },
+                [&](std::vector<SceneObject>& all) { object_in(all, name)->pose = pose; });
           },
           py::arg("name"), py::arg("pose"),
           "pose: in the base frame. Raises InvalidArgument for an unknown name.")
       .def(
           "remove",
           [](SharedPlanner& self, const std::string& name) {
-            self.change([&](Planner& planner) { planner.remove(name); });
+            self.change_scene(
+                [&](Planner& planner) { planner.remove(name); },
+                [&](std::vector<SceneObject>& all) { all.erase(object_in(all, name)); });
           },
           py::arg("name"))
       .def(
@@ -346,8 +485,7 @@ void bind_planner(py::module_& m) {
            "an AdviceList.")
       .def("__repr__", [](SharedPlanner& self) {
         if (self.in_use()) return std::string("<Planner, at work>");
-        const PathProblem problem = self.problem();
-        return "<Planner of " + py::repr(py::cast(Problem(problem))).cast<std::string>() + ">";
+        return "<Planner of " + py::repr(py::cast(self.whole_problem())).cast<std::string>() + ">";
       });
 }
 

@@ -128,7 +128,14 @@ __all__ += [
 
 
 def _planner(problem):
-    return Planner(_loaded(problem))  # noqa: F405
+    problem = _loaded(problem)
+    kind = problem._kind()
+    if kind != "one path":
+        words = "of two arms" if kind == "two arms" else "with strokes"
+        raise InvalidArgument(  # noqa: F405
+            f"a problem {words}: allowed are problems of one path"
+        )
+    return Planner(problem)  # noqa: F405
 
 
 def _refuse(problem, kinds, **given):

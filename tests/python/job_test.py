@@ -19,6 +19,7 @@ import swivel
 
 PROGRAM, DATA = os.environ["SWIVEL"], Path(os.environ["SWIVEL_DATA"])
 DOOR = DATA / "problems" / "door_job.yaml"
+PATH = DATA / "problems" / "experiment_c.yaml"
 PLATE = DATA / "problems" / "sda10f_plate_workcell.yaml"
 HOME = [-0.6241, -1.2398, 0.7037, -0.7659, 0.8316, 1.8921, -0.3086]
 COARSE = swivel.Resolution(ds=0.02, dphi=0.2)
@@ -413,6 +414,54 @@ class JobMotions(unittest.TestCase):
         self.assertAlmostEqual(costly.cost, rows + moves, 5)
         none = swivel.plan(self.job, check=lambda joints: np.zeros(len(joints), bool))
         self.assertEqual(none.status, swivel.Status.INFEASIBLE)
+
+    def test_planners_plan_again(self):
+        """Plans of a planner after changes are those of a new one, bit for bit."""
+        planner = swivel.Planner(self.job)
+        self.assertIn("strokes", repr(planner))
+        planner.prepare()
+
+        def move(by):
+            pose = planner.problem.scene["door"].pose
+            pose[0, 3] += by
+            planner.move("door", pose)
+
+        ball = swivel.SceneObject("ball", swivel.Sphere(0.05), swivel.pose([0.4, 0.6, 0.4]))
+        changes = {
+            "as it is": lambda: None,
+            "moved": lambda: move(0.01),
+            "ball": lambda: planner.add(ball),
+            "without": lambda: planner.remove("ball"),
+            "without home": lambda: planner.set_problem(small(home=None)),
+            "two arms": lambda: planner.set_problem(swivel.load(PLATE)),
+            "ball beside two arms": lambda: planner.add(ball),
+            "one path": lambda: planner.set_problem(swivel.load(PATH)),
+            "strokes again": lambda: planner.set_problem(self.job),
+        }
+        solved = 0
+        for what, change in changes.items():
+            change()
+            for keywords in ({}, {"refine": True}):
+                found = planner.plan(**keywords)
+                fresh = swivel.plan(planner.problem, **keywords)
+                self.assertEqual(found.to_json().split('"time_ms"')[0].split('"counters"')[0],
+                                 fresh.to_json().split('"time_ms"')[0].split('"counters"')[0], what)
+                self.assertEqual(found.status, fresh.status, what)
+                if found.solved:
+                    self.assertEqual(found.to_csv(), fresh.to_csv(), what)
+                    solved += 1
+        self.assertGreaterEqual(solved, 12)
+        other = planner.clone()
+        self.assertEqual(other.plan().cost, planner.plan().cost)
+        with self.assertRaisesRegex(swivel.InvalidArgument, "'gate': no such object"):
+            planner.move("gate", np.eye(4))
+        with self.assertRaisesRegex(swivel.InvalidArgument, "this planner is of a problem with"):
+            planner.clearance(np.zeros((1, 7)))
+        barred_planner = swivel.Planner(barred())
+        answer = barred_planner.plan()
+        self.assertFalse(answer.solved)
+        advice = barred_planner.advise(answer, timeout=2)
+        self.assertIsInstance(advice, swivel.AdviceList)
 
     def test_not_executable(self):
         # The cheapest job of this episode jumps from branch to branch at a singularity.
@@ -820,9 +869,11 @@ class JobErrors(unittest.TestCase):
         self.assertNotIn("\n", str(caught.exception))
 
     def test_problems_are_no_jobs(self):
-        for function in (swivel.Planner, lambda of: swivel.measure(of, None)):
+        for function in (swivel.measure, swivel.refine):
             self.raises(swivel.InvalidArgument, "a problem with strokes: .* of one path",
-                        function, swivel.load(DOOR))
+                        function, swivel.load(DOOR), None)
+        self.raises(swivel.InvalidArgument, "this planner is of a problem with strokes or two arms",
+                    swivel.Planner(swivel.load(DOOR)).set_task, swivel.load(PATH).task)
         self.raises(swivel.InvalidArgument, "stretch: a problem with strokes",
                     swivel.load(DOOR).stretch, 0.1)
         job = swivel.load(DOOR)

@@ -485,7 +485,8 @@ class Workcells(unittest.TestCase):
             swivel.check(DATA / "problems" / "experiment_c.yaml", swivel.plan(PLATE))
         cell = swivel.load(PLATE)
         for call in (
-            lambda: swivel.Planner(cell), lambda: cell.stretch(0), lambda: cell.save("a.yaml"),
+            lambda: swivel.measure(cell, None), lambda: cell.stretch(0),
+            lambda: cell.save("a.yaml"),
             lambda: swivel.plan(cell, check=len), lambda: swivel.plan(cell, cost=len),
             lambda: swivel.check(cell, None, speed=1)
         ):

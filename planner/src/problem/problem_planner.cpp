@@ -159,13 +159,17 @@ struct ProblemPlanner::OfTwoArms : Impl {
 };
 
 void ProblemPlanner::set_problem(Problem problem, const Budget& budget) {
-  Problem next = completed(problem, impl_->asked);
+  set_problem(std::move(problem), impl_->asked, budget);
+}
+void ProblemPlanner::set_problem(Problem problem, MotionRequest asked, const Budget& budget) {
+  Problem next = completed(problem, asked);
   if (!impl_->take(next, budget)) {
-    *this = ProblemPlanner(std::move(problem), impl_->asked, budget);
+    *this = ProblemPlanner(std::move(problem), std::move(asked), budget);
     return;
   }
   impl_->view = {};
   impl_->problem = std::move(next);
+  impl_->asked = std::move(asked);
 }
 
 ProblemPlanner::ProblemPlanner(Problem problem, MotionRequest asked, const Budget& budget) {

@@ -44,6 +44,8 @@ class ProblemPlanner {
   /// start or part take less time. The next plan is that of a new planner, but for its counters.
   /// Throws as the constructor does, and changes nothing then.
   void set_problem(Problem problem, const Budget& budget = {});
+  /// Replaces the problem, and what is asked of a plan besides.
+  void set_problem(Problem problem, MotionRequest asked, const Budget& budget = {});
   /// Returns the problem as it is planned.
   [[nodiscard]] const Problem& problem() const;
   /// Plans as plan_motion(), plan_job_motion() and plan_workcell_motion() do, and throws as they
