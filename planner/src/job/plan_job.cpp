@@ -83,11 +83,7 @@ class AfterJobPlan {
     RefinedRuns none;
     for (const Part& part : planned_) {
       if (!part.run) continue;
-      none.runs.push_back({.rows = part.rows,
-                           .rows_before = part.rows,
-                           .reason = reason,
-                           .cost_before = part.cost,
-                           .cost = part.cost});
+      none.runs.push_back(not_refined(part.rows, part.cost, reason));
       none.cost += part.cost;
     }
     none.cost_before = none.cost;

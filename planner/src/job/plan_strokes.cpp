@@ -16,7 +16,7 @@
 #include "job/transitions/job_transitions.hpp"
 #include "measure/measure_rows.hpp"
 #include "plan/answer.hpp"
-#include "plan/eager_planners.hpp"
+#include "plan/search_settings.hpp"
 #include "plan/keeps_branch.hpp"
 #include "plan/search.hpp"
 #include "plan/stopwatch.hpp"
@@ -188,13 +188,6 @@ class JobRuns {
   std::deque<std::pair<Limits, World>> worlds_;  // by their limits; references stay valid
   std::vector<std::shared_ptr<PlannedRun>> known_;
 };
-
-/// Returns the number of threads of a plan. One plan calls hooks from one thread alone.
-int threads_for(const PlanOptions& options) {
-  const bool alone =
-      options.planner == PlannerKind::kLazy || options.hooks.check || options.hooks.cost;
-  return alone ? 1 : options.threads;
-}
 
 class JobPlan {
  public:

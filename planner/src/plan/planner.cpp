@@ -11,7 +11,7 @@
 #include "diagnosis/diagnosis.hpp"
 #include "measure/measure_rows.hpp"
 #include "plan/answer.hpp"
-#include "plan/eager_planners.hpp"
+#include "plan/search_settings.hpp"
 #include "plan/search.hpp"
 #include "plan/stopwatch.hpp"
 #include "plan/told_turns.hpp"

@@ -317,13 +317,7 @@ PlanResult plan_executable(Planner& planner, const PlanOptions& options, bool on
 /// Notes that time ran out: the lattice's path stays, without refinement and motion.
 void stop(MotionPlan& plan, bool refined, bool timed) {
   plan.stopped = true;
-  const double cost = plan.result.cost;
-  if (refined)
-    plan.refinement = Refined{.rows = plan.lattice_path,
-                              .rows_before = plan.lattice_path,
-                              .reason = "stopped",
-                              .cost_before = cost,
-                              .cost = cost};
+  if (refined) plan.refinement = not_refined(plan.lattice_path, plan.result.cost, "stopped");
   if (timed) plan.motion.emplace().failure = NoMotion{0, "stopped"};
 }
 
@@ -406,12 +400,7 @@ MotionPlan plan_motion(Planner& planner, const PlanOptions& options, bool refine
   if (result.status != PlanStatus::kSolved) return plan;
   plan.lattice_path = result.trajectory;
   const PlanView view = planner.view();
-  if (own_cost)
-    plan.refinement = Refined{.rows = plan.lattice_path,
-                              .rows_before = plan.lattice_path,
-                              .reason = kOwnCostReason,
-                              .cost_before = result.cost,
-                              .cost = result.cost};
+  if (own_cost) plan.refinement = not_refined(plan.lattice_path, result.cost, kOwnCostReason);
   RefinedMotion found;
   const auto take_times = [&] {
     if (found.refinement) plan.refinement = std::move(found.refinement);

@@ -788,8 +788,8 @@ Refined refine(const PreparedRobot& robot, const PathProblem& problem,
                const Budget& budget) {
   validate(problem);
   robot.require_prepared_for(problem);
-  const bool closes = problem.closed && !problem.start,
-             keeps_begin = closes || options.keeps_begin, keeps_end = closes || options.keeps_end;
+  const bool closes = problem.closed && !problem.start, keeps_begin = closes || options.keeps_begin,
+             keeps_end = closes || options.keeps_end;
   if (rows.empty() || !(keeps_begin || keeps_end))
     return refine_between_ends(robot, problem, rows, options, budget);
   PathProblem pinned = problem;

@@ -11,6 +11,12 @@ namespace swivel {
 /// Why paths are not refined with a cost of the caller's own, which is not known off the lattice.
 inline constexpr const char* kOwnCostReason = "the caller's own cost is not refined";
 
+/// Returns what is said of rows that are not refined, for a reason.
+[[nodiscard]] inline Refined not_refined(const std::vector<TrajectoryRow>& rows, double cost,
+                                         const char* reason) {
+  return {.rows = rows, .rows_before = rows, .reason = reason, .cost_before = cost, .cost = cost};
+}
+
 /// What was made of the rows of a path so far.
 struct RefinedMotion {
   std::optional<Refined> refinement;   ///< set where asked for and done

@@ -10,9 +10,9 @@
 
 #include "measure/measure_rows.hpp"
 #include "plan/answer.hpp"
-#include "plan/eager_planners.hpp"
 #include "plan/require_no_hooks.hpp"
 #include "plan/search.hpp"
+#include "plan/search_settings.hpp"
 #include "plan/stopwatch.hpp"
 #include "plan/told_turns.hpp"
 #include "swivel/collision/arms/inter_arm_world.hpp"
@@ -85,7 +85,7 @@ class WorkcellPlan {
       : prepared_(prepared),
         options_(options),
         budget_(budget),
-        executor_(options.planner == PlannerKind::kLazy ? 1 : options.threads),
+        executor_(threads_for(options)),
         view_(view) {}
 
   /// `explained`: whether the trajectories are measured, or arms without a path diagnosed.

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "plan/stopwatch.hpp"
+#include "refine/refine_until_timed.hpp"
 #include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/timing/time_path.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
@@ -83,14 +84,8 @@ class AfterPlan {
     answer_.motion.reset();
     if (!refined) return;
     RefinedRuns& none = answer_.refinement.emplace();
-    for (std::size_t k = 0; k < 2; ++k) {
-      const double cost = answer_.arms[k].cost();
-      none.runs.push_back({.rows = planned_[k],
-                           .rows_before = planned_[k],
-                           .reason = "stopped",
-                           .cost_before = cost,
-                           .cost = cost});
-    }
+    for (std::size_t k = 0; k < 2; ++k)
+      none.runs.push_back(not_refined(planned_[k], answer_.arms[k].cost(), "stopped"));
     none.cost_before = none.cost = answer_.cost;
   }
 

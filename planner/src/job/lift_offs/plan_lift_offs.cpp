@@ -13,6 +13,7 @@
 #include "job/lift_offs/lift_search.hpp"
 #include "plan/answer.hpp"
 #include "plan/search.hpp"
+#include "plan/search_settings.hpp"
 #include "plan/stopwatch.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
@@ -77,11 +78,9 @@ class LiftPlan {
     for (const RunAnswer& run : first.arm().runs) {
       if (run.status != PlanStatus::kInfeasible) continue;
       CutStroke& stroke = strokes_.emplace_back();
-      stroke.search = std::make_unique<LiftSearch>(
-          robot_, job_, run.run.stroke,
-          options_.fcl_alone ? DistanceProofs::kOff : DistanceProofs::kOn, options_.hooks.check,
-          options_.planner == PlannerKind::kLazy || options_.hooks.check ? 1 : options_.threads,
-          budget_);
+      stroke.search =
+          std::make_unique<LiftSearch>(robot_, job_, run.run.stroke, distance_proofs_of(options_),
+                                       options_.hooks.check, threads_for(options_), budget_);
       const std::optional<int> least = stroke.search->least();
       stroke.count = std::max(1, least.value_or(1));
       const auto places = least ? stroke.search->next(stroke.count) : std::nullopt;

@@ -16,4 +16,12 @@ namespace swivel {
   return is_eager(options) || options.fcl_alone ? DistanceProofs::kOff : DistanceProofs::kOn;
 }
 
+/// Returns the number of threads of a search over several lattices, 0 for all cores. One plan calls
+/// hooks from one thread alone.
+[[nodiscard]] inline int threads_for(const PlanOptions& options) {
+  const bool alone =
+      options.planner == PlannerKind::kLazy || options.hooks.check || options.hooks.cost;
+  return alone ? 1 : options.threads;
+}
+
 }  // namespace swivel
