@@ -126,13 +126,16 @@ class AfterJobPlan {
 
   /// Measures the refined runs as plans measure theirs.
   void measure() {
+    std::vector<RunAnswer>& runs = answer_.arm().runs;
+    // Where time runs out, all runs say what was asked of them.
+    for (std::size_t k = 0; k < runs.size(); ++k)
+      ask_for(options_.evidence, !view_.runs.at(k).world.allowed().empty(), runs[k]);
     std::size_t k = 0;
     for (const Part& part : parts()) {
       if (!part.run) continue;
       const PlanView& run = view_.runs.at(k);
-      Measures& measures = answer_.arm().runs[k++];
+      Measures& measures = runs[k++];
       const ToolPath& path = run.lattice.path_of_rows();
-      ask_for(options_.evidence, !run.world.allowed().empty(), measures);
       measure_margins(robot_.arm().chain, path, part.rows, measures);
       measure_rows(robot_, path, run.world, part.rows, options_.evidence, budget_, measures);
     }
