@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "answer_order.hpp"
@@ -59,87 +60,139 @@ inline std::vector<double> closed_costs_of(
   return costs;
 }
 
-/// Plans by the definition: asks about every pair of nodes of neighbouring layers, with steps of
-/// its own and the plain edge rule, then runs a dynamic program and applies the order of answers.
-/// Costs and order are those of the nodes; all that is tested is tested on the rows, the exact
-/// configurations. `in_window`: whether slots a and b of neighbouring layers may be joined. Hooks
-/// are asked about one state or motion at a time.
-inline BruteForcePath brute_force(const Lattice& lattice, const World& world, const EdgeRule& rule,
-                                  const std::function<bool(int layer, int a, int b)>& in_window,
-                                  const Hooks& hooks = {}) {
-  World::Query query(world);
-  const Chain& chain = lattice.chain();
-  const Limits& limits = lattice.limits();
-  const auto layers = static_cast<std::size_t>(lattice.layers());
-  std::vector<std::vector<std::optional<Config>>> nodes(layers), rows(layers);
-  for (std::size_t i = 0; i < layers; ++i)
-    for (int slot = 0; slot < lattice.slots(static_cast<int>(i)); ++slot) {
-      nodes[i].push_back(lattice.node(static_cast<int>(i), slot));
-      std::optional<Config>& q = nodes[i].back();
-      if (!q) {
-        rows[i].emplace_back();
-        continue;
-      }
-      rows[i].push_back(lattice.exact_config(static_cast<int>(i), slot, *q));
-      const auto& row = rows[i].back();
-      if (!row || chain.manipulability(*row) < limits.manipulability ||
-          query.find_violating_pair(*row, ClearanceRule::kNode))
-        q.reset();
-      bool allowed = true;
-      if (q && hooks.check) hooks.check->states({&*row, 1}, {&allowed, 1});
-      if (!allowed) q.reset();
-    }
-  const auto own_cost = [&](std::size_t i, std::size_t slot) {
+/// The nodes and edges of a lattice by their definitions, with steps of its own and the plain edge
+/// rule. Costs are those of the nodes; all that is tested is tested on the rows, the exact
+/// configurations. Hooks are asked about one state or motion at a time.
+class PlainLattice {
+ public:
+  /// `in_window`: whether slots a and b of neighbouring layers may be joined. References must
+  /// outlive it.
+  PlainLattice(const Lattice& lattice, const World& world, const EdgeRule& rule,
+               std::function<bool(int layer, int a, int b)> in_window, Hooks hooks = {})
+      : lattice_(lattice),
+        query_(world),
+        rule_(rule),
+        in_window_(std::move(in_window)),
+        hooks_(std::move(hooks)),
+        nodes_(static_cast<std::size_t>(lattice.layers())),
+        rows_(nodes_.size()) {
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+      for (int slot = 0; slot < lattice.slots(static_cast<int>(i)); ++slot)
+        add_node(static_cast<int>(i), slot);
+  }
+  [[nodiscard]] const Lattice& lattice() const { return lattice_; }
+  /// Returns the joints of the valid nodes by layer and slot.
+  [[nodiscard]] const std::vector<std::vector<std::optional<Config>>>& nodes() const {
+    return nodes_;
+  }
+  [[nodiscard]] double own_cost(std::size_t i, std::size_t slot) const {
     double cost = 0;
-    if (hooks.cost) hooks.cost->costs({&*rows[i][slot], 1}, {&cost, 1});
-    return lattice.rounded_cost(cost) +
-           lattice.node_cost(static_cast<int>(i), static_cast<int>(slot));
-  };
-  const auto edge = [&](std::size_t i, std::size_t a, std::size_t b) -> std::optional<double> {
+    if (hooks_.cost) hooks_.cost->costs({&*rows_[i][slot], 1}, {&cost, 1});
+    return lattice_.rounded_cost(cost) +
+           lattice_.node_cost(static_cast<int>(i), static_cast<int>(slot));
+  }
+  /// Returns the cost of the edge between two valid nodes, if it is valid.
+  [[nodiscard]] std::optional<double> edge(std::size_t i, std::size_t a, std::size_t b) {
     const int layer = static_cast<int>(i), sa = static_cast<int>(a), sb = static_cast<int>(b);
-    if (!in_window(layer, sa, sb)) return std::nullopt;
-    const Config &qa = *nodes[i][a], &qb = *nodes[i + 1][b];
-    const Config &row_a = *rows[i][a], &row_b = *rows[i + 1][b];
-    if (lattice.has_layers_between()) {
-      const Config delta = lattice.delta(qa, qb);
-      for (int j = 0; j < kDof; ++j)
-        if (std::abs(delta[j]) > lattice.step_bound(layer)[j]) return std::nullopt;
-      Lattice::InterpolatedEdge interpolated =
-          lattice.interpolate_edge(layer, sa, row_a, sb, row_b);
-      if (interpolated.fault != Lattice::InterpolatedEdge::Fault::kNone) return std::nullopt;
-      for (const Config& q : interpolated.rows)
-        if (query.find_violating_pair(q, ClearanceRule::kNode)) return std::nullopt;
-      interpolated.rows.push_back(row_b);
-      Config from = row_a;
-      for (const Config& row : interpolated.rows) {
-        const Config to = from + lattice.delta(from, row);
-        if (limits.edges == EdgeMode::kContinuous && edge_blocked_plain(query, rule, from, to))
-          return std::nullopt;
-        from = to;
-      }
-      return lattice.edge_cost(delta);
+    if (!in_window_(layer, sa, sb)) return std::nullopt;
+    return lattice_.has_layers_between() ? edge_of_layers(i, a, b) : edge_of_layer(i, a, b);
+  }
+  /// Returns the cost of the edge between two valid nodes of a lattice with layers between, whether
+  /// or not what lies between is valid; none if the nodes are too far apart.
+  [[nodiscard]] std::optional<double> chord(std::size_t i, std::size_t a, std::size_t b) const {
+    const Config delta = lattice_.delta(*nodes_[i][a], *nodes_[i + 1][b]);
+    for (int j = 0; j < kDof; ++j)
+      if (std::abs(delta[j]) > lattice_.step_bound(static_cast<int>(i))[j]) return std::nullopt;
+    return lattice_.edge_cost(delta);
+  }
+
+ private:
+  void add_node(int layer, int slot) {
+    const auto i = static_cast<std::size_t>(layer);
+    nodes_[i].push_back(lattice_.node(layer, slot));
+    std::optional<Config>& q = nodes_[i].back();
+    if (!q) {
+      rows_[i].emplace_back();
+      return;
     }
+    rows_[i].push_back(lattice_.exact_config(layer, slot, *q));
+    const auto& row = rows_[i].back();
+    if (!row || lattice_.chain().manipulability(*row) < lattice_.limits().manipulability ||
+        query_.find_violating_pair(*row, ClearanceRule::kNode))
+      q.reset();
+    bool allowed = true;
+    if (q && hooks_.check) hooks_.check->states({&*row, 1}, {&allowed, 1});
+    if (!allowed) q.reset();
+  }
+  [[nodiscard]] std::optional<double> edge_of_layers(std::size_t i, std::size_t a, std::size_t b) {
+    const auto cost = chord(i, a, b);
+    if (!cost) return std::nullopt;
+    const Config &row_a = *rows_[i][a], &row_b = *rows_[i + 1][b];
+    Lattice::InterpolatedEdge interpolated = lattice_.interpolate_edge(
+        static_cast<int>(i), static_cast<int>(a), row_a, static_cast<int>(b), row_b);
+    if (interpolated.fault != Lattice::InterpolatedEdge::Fault::kNone) return std::nullopt;
+    for (const Config& q : interpolated.rows) {
+      if (query_.find_violating_pair(q, ClearanceRule::kNode)) return std::nullopt;
+      bool allowed = true;
+      if (hooks_.check) hooks_.check->states({&q, 1}, {&allowed, 1});
+      if (!allowed) return std::nullopt;
+    }
+    interpolated.rows.push_back(row_b);
+    Config from = row_a;
+    for (const Config& row : interpolated.rows) {
+      const Config to = from + lattice_.delta(from, row);
+      if (!motion_allowed(from, to)) return std::nullopt;
+      from = to;
+    }
+    return cost;
+  }
+  [[nodiscard]] std::optional<double> edge_of_layer(std::size_t i, std::size_t a, std::size_t b) {
+    const int layer = static_cast<int>(i);
+    const Config &qa = *nodes_[i][a], &qb = *nodes_[i + 1][b];
+    const Config &row_a = *rows_[i][a], &row_b = *rows_[i + 1][b];
     Config delta = qb - qa, row_delta = row_b - row_a;
     for (int j = 0; j < kDof; ++j) {
       for (Config* move : {&delta, &row_delta})
-        if (lattice.continuous()[static_cast<std::size_t>(j)])
+        if (lattice_.continuous()[static_cast<std::size_t>(j)])
           (*move)[j] = std::remainder((*move)[j], kTwoPi);
-      const double most = limits.joint_step * (j == chain.slide() ? kSlideForTurn : 1);
-      if (std::abs(delta[j]) > most + 2 * lattice.fit_error()[j] || std::abs(row_delta[j]) > most)
+      const double most =
+          lattice_.limits().joint_step * (j == lattice_.chain().slide() ? kSlideForTurn : 1);
+      if (std::abs(delta[j]) > most + 2 * lattice_.fit_error()[j] || std::abs(row_delta[j]) > most)
         return std::nullopt;
     }
-    if (!lattice.follows_path(layer, sa, row_a, sb, row_b)) return std::nullopt;
-    if (limits.edges == EdgeMode::kContinuous &&
-        edge_blocked_plain(query, rule, row_a, row_a + row_delta))
+    if (!lattice_.follows_path(layer, static_cast<int>(a), row_a, static_cast<int>(b), row_b) ||
+        !motion_allowed(row_a, row_a + row_delta))
       return std::nullopt;
-    if (hooks.check && hooks.check->checks_motions()) {
-      const StateCheck::Motion motion{row_a, row_a + row_delta};
-      bool allowed = true;
-      hooks.check->motions({&motion, 1}, {&allowed, 1});
-      if (!allowed) return std::nullopt;
-    }
-    return lattice.edge_cost(delta);
-  };
+    return lattice_.edge_cost(delta);
+  }
+  [[nodiscard]] bool motion_allowed(const Config& from, const Config& to) {
+    if (lattice_.limits().edges == EdgeMode::kContinuous &&
+        edge_blocked_plain(query_, rule_, from, to))
+      return false;
+    bool allowed = true;
+    const StateCheck::Motion motion{from, to};
+    if (hooks_.check && hooks_.check->checks_motions())
+      hooks_.check->motions({&motion, 1}, {&allowed, 1});
+    return allowed;
+  }
+
+  const Lattice& lattice_;
+  World::Query query_;
+  const EdgeRule& rule_;
+  std::function<bool(int, int, int)> in_window_;
+  Hooks hooks_;
+  std::vector<std::vector<std::optional<Config>>> nodes_, rows_;
+};
+
+/// Plans by the definition: asks about every pair of nodes of neighbouring layers, then runs a
+/// dynamic program and applies the order of answers. Parameters as of PlainLattice.
+inline BruteForcePath brute_force(const Lattice& lattice, const World& world, const EdgeRule& rule,
+                                  const std::function<bool(int layer, int a, int b)>& in_window,
+                                  const Hooks& hooks = {}) {
+  PlainLattice plain(lattice, world, rule, in_window, hooks);
+  const auto& nodes = plain.nodes();
+  const auto layers = nodes.size();
+  const auto own_cost = [&](std::size_t i, std::size_t slot) { return plain.own_cost(i, slot); };
   constexpr double kNone = std::numeric_limits<double>::infinity();
   std::vector<std::vector<double>> g(layers);
   std::vector<std::vector<int>> next(layers);
@@ -157,7 +210,7 @@ inline BruteForcePath brute_force(const Lattice& lattice, const World& world, co
       const double own = own_cost(i, a);
       for (std::size_t b = 0; b < nodes[i + 1].size(); ++b) {
         if (!nodes[i + 1][b]) continue;
-        const auto cost = edge(i, a, b);
+        const auto cost = plain.edge(i, a, b);
         if (!cost) continue;
         into[i + 1][b].push_back({a, *cost});
         if (own + *cost + g[i + 1][b] < g[i][a]) {
