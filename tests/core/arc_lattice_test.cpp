@@ -248,6 +248,56 @@ TEST(ArcLattice, NodesReachTheirPosesAndLieCloseTogether) {
   EXPECT_GT(counts.transported, 3 * counts.filled);
 }
 
+/// Knots that are inserted have nodes at their poses; other knots keep theirs; links lead to slots
+/// that there are.
+TEST(ArcLattice, HalvedStepsKeepTheNodesOfOtherKnots) {
+  Random random(seed("ArcLattice.HalvedSteps"));
+  int inserted = 0, links = 0;
+  for (const ArmTable& table : arms()) {
+    const Chain chain = chain_of(table);
+    const LockMethod method = lock_method(chain);
+    PathProblem problem = random_path(chain, 0.3, 0.01, random);
+    problem.resolution.arc = 0.25;
+    problem.resolution.knot = 0.08;
+    const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
+    std::unique_ptr<Lattice> coarse = std::make_unique<ArcLattice>(chain, method, path, problem);
+    for (int level = 0; level < 3; ++level) {
+      std::set<int> steps;
+      for (int step = 0; step + 1 < coarse->layers(); ++step)
+        if (random.coin(0.6)) steps.insert(step);
+      std::unique_ptr<Lattice> fine = coarse->with_knots(steps, {});
+      if (!fine) break;
+      int old = 0;
+      for (int layer = 0; layer < fine->layers(); ++layer) {
+        const Pose& tool = path.layer(fine->layer_of_rows(layer)).tool;
+        const bool kept =
+            old < coarse->layers() && coarse->layer_of_rows(old) == fine->layer_of_rows(layer);
+        for (int slot = 0; slot < fine->slots(layer); ++slot) {
+          const Config q = *fine->node(layer, slot);
+          ASSERT_LT((chain.tool(q).matrix() - tool.matrix()).norm(), 1e-9);
+          if (kept) {
+            ASSERT_EQ(q, *coarse->node(old, slot));
+          }
+          for (const int by : {-1, 1}) {
+            const int other = fine->neighbour_along_path(layer, slot, by);
+            if (other < 0) continue;
+            ASSERT_GE(layer + by, 0);
+            ASSERT_LT(layer + by, fine->layers());
+            ASSERT_LT(other, fine->slots(layer + by));
+            ++links;
+          }
+        }
+        (kept ? old : inserted)++;
+      }
+      ASSERT_EQ(old, coarse->layers());
+      coarse = std::move(fine);
+    }
+  }
+  std::printf("  %d knots inserted, %d links\n", inserted, links);
+  EXPECT_GE(inserted, 10);
+  EXPECT_GE(links, 500);
+}
+
 TEST(ArcLattice, PathsCostLittleMoreThanTheBestKnown) {
   Random random(seed("ArcLattice.PathsCostLittleMoreThanTheBestKnown"));
   std::vector<double> plain,

@@ -141,13 +141,13 @@ class Problems(unittest.TestCase):
                     self.assertRegex(done.stderr, "problem.yaml:1: .*allowed")
 
 
-def made_problem(attached=(), walls=(), touched=(), **path):
-    """An iiwa 14 along two lines at right angles."""
+def made_problem(attached=(), walls=(), touched=(), arm="iiwa14", resolution=None, **path):
+    """An arm, by default an iiwa 14, along two lines at right angles."""
     down = [0, 3.14159265358979, 0]
     corners = [[0.5, -0.2, 0.4], [0.5, 0.2, 0.4], [0.6, 0.2, 0.4]]
     robot = {
-        "urdf": str(PROBLEMS.parent / "robots" / "iiwa14.urdf"), "base_link": "base_link",
-        "tip_link": "tool0", "attached": list(attached)
+        "urdf": str(PROBLEMS.parent / "robots" / f"{arm}.urdf"), "base_link": "base_link",
+        "tip_link": "tool0" if arm == "iiwa14" else "flange", "attached": list(attached)
     }
     scene = [{"name": name, "box": [0.3, 0.02, 1], "xyz": [0.5, 0, 0.5]} for name in walls]
     scene += list(touched)
@@ -156,7 +156,7 @@ def made_problem(attached=(), walls=(), touched=(), **path):
     return {
         "robot": robot,
         "path": {"waypoints": [{"xyz": corner, "rpy": down} for corner in corners], **path},
-        "scene": scene,
+        "scene": scene, "resolution": resolution or {},
     }
 
 
@@ -195,6 +195,7 @@ class Results(unittest.TestCase):
         (made_problem(walls=["one", "two"]),),
         (made_problem(walls=["one"], roll=[0.3, 0.6]),),
         (made_problem(frame="far"),),
+        (made_problem(arm="panda_like", resolution={"knot": 0.06}),),
         # The nib, 0.1 m below the flange, is pressed 10 mm deep into the bed.
         (
             made_problem(

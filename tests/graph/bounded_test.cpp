@@ -544,9 +544,10 @@ struct ReachCase {
     task.unit = random.coin() ? 1 : std::exp2(random.below(41) - 20);
     task.metric = random.coin() ? RelaxMetric::kL2 : RelaxMetric::kMax;
     task.wraps = random.coin();
+    const double widest = random.coin(0.3) ? 8 : 1;  // as of steps from knot to knot
     for (std::size_t j = 0; j < kDof; ++j) {
       task.turn[j] = task.wraps && random.coin() ? kTwoPi : 0;
-      task.bound[j] = random.coin(0.05) ? 0 : random.uniform(0.1, 1);
+      task.bound[j] = random.coin(0.05) ? 0 : widest * random.uniform(0.1, 1);
       task.scale[j] = random.coin(0.1) ? 0 : task.unit * random.uniform(0, 3);
     }
     for (int k = 0; k < task.offsets; ++k) add_partner(random);
@@ -558,11 +559,34 @@ struct ReachCase {
       task.to[j] = to[j].data();
     }
   }
+  /// Adds boxes about blocks of partners, and the least value in each.
+  void add_blocks() {
+    constexpr int kBlock = RelaxTask<double>::kBlock;
+    for (int first = 0; first < task.offsets; first += kBlock) {
+      const int end = std::min(task.offsets, first + kBlock);
+      for (std::size_t j = 0; j < kDof; ++j) {
+        double low = 0, high = 0;
+        for (int k = first; k < end; ++k) {
+          double step = to[j][static_cast<std::size_t>(k)] - to[j][static_cast<std::size_t>(first)];
+          if (task.turn[j] > 0) step = std::remainder(step, kTwoPi);
+          low = std::min(low, step), high = std::max(high, step);
+        }
+        block_middle[j].push_back(to[j][static_cast<std::size_t>(first)] + (low + high) / 2);
+        block_radius[j].push_back((high - low) / 2);
+      }
+      block_value.push_back(*std::min_element(value.begin() + first, value.begin() + end));
+    }
+    for (std::size_t j = 0; j < kDof; ++j) {
+      task.block_middle[j] = block_middle[j].data();
+      task.block_radius[j] = block_radius[j].data();
+    }
+    task.block_value = block_value.data();
+  }
   ReachCase(const ReachCase&) = delete;
   ReachCase& operator=(const ReachCase&) = delete;
 
-  std::array<std::vector<double>, kDof> from, to;
-  std::vector<double> value;
+  std::array<std::vector<double>, kDof> from, to, block_middle, block_radius;
+  std::vector<double> value, block_value;
   RelaxTask<double> task{};
   int turned = 0;  ///< joints of partners that are a turn further than those of the node
 
@@ -596,6 +620,14 @@ TEST(Kernels, EveryNodeMeetsEveryPartnerInItsReach) {
       some.task.best = best.data();
       kernels->relax_all(some.task);
       ASSERT_EQ(best, plain);
+      ++runs;
+    }
+    some.add_blocks();
+    for (const RelaxKernels* kernels : units) {
+      std::vector<double> best(static_cast<std::size_t>(some.task.n), kUnreachable);
+      some.task.best = best.data();
+      kernels->relax_all(some.task);
+      ASSERT_EQ(best, plain) << "with blocks";
       ++runs;
     }
   }

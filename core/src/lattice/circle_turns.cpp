@@ -60,7 +60,8 @@ CircleTurns circle_turns(const Lattice& lattice, const Lattice::Joints& circles,
     const double inside = lattice.limits().joint_margin - kLimitTolerance,
                  lower = limit.lower + inside, upper = limit.upper - inside;
     const Extent extent = extent_of(rows, joint);
-    const bool closes = lattice.is_closed() && static_cast<int>(rows.size()) == lattice.layers();
+    const bool closes =
+        lattice.is_closed() && static_cast<int>(rows.size()) == lattice.path_of_rows().size();
     // No lattice tells the turns of a wide joint apart.
     if (!limit.wide() && ((closes && std::abs(rows.back()[joint] - rows.front()[joint]) > kPi) ||
                           (end != nullptr && std::abs(rows.back()[joint] - (*end)[joint]) > kPi)))

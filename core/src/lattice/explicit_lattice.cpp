@@ -11,6 +11,19 @@ namespace swivel {
 ExplicitLattice::ExplicitLattice(const Chain& chain, const ToolPath& path,
                                  const PathProblem& problem, std::vector<std::vector<Point>> layers,
                                  const std::array<bool, kDof>& circles)
+    : ExplicitLattice(chain, path, problem, shared(std::move(layers)), circles) {}
+
+ExplicitLattice::Layers ExplicitLattice::shared(std::vector<std::vector<Point>> layers) {
+  Layers all;
+  all.reserve(layers.size());
+  for (std::vector<Point>& layer : layers)
+    all.push_back(std::make_shared<const std::vector<Point>>(std::move(layer)));
+  return all;
+}
+
+ExplicitLattice::ExplicitLattice(const Chain& chain, const ToolPath& path,
+                                 const PathProblem& problem, Layers layers,
+                                 const std::array<bool, kDof>& circles)
     : Lattice(chain, path, problem), points_(std::move(layers)) {
   if (static_cast<int>(points_.size()) != path.size())
     throw std::invalid_argument("explicit lattice: " + std::to_string(points_.size()) +
@@ -20,7 +33,7 @@ ExplicitLattice::ExplicitLattice(const Chain& chain, const ToolPath& path,
     throw InputError(problem.source,
                      "limits.step_error: needs the closed form of an S-R-S arm: allowed is null");
   for (std::size_t j = 0; j < kDof; ++j) continuous_[j] = continuous_[j] || circles[j];
-  for (const auto& layer : points_) nodes_ += static_cast<std::int64_t>(layer.size());
+  for (const auto& layer : points_) nodes_ += static_cast<std::int64_t>(layer->size());
 }
 
 void ExplicitLattice::layer_nodes(int layer, std::vector<Node>& out) const {

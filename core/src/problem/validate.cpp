@@ -311,7 +311,7 @@ void validate_numbers(const Field& root, const PathProblem& problem) {
     fail(resolution("dphi"), "is more than a turn", "a finite number > 0, at most 2*pi");
   number(resolution("dalpha"), problem.resolution.dalpha, kPositive);
   number(resolution("droll"), problem.resolution.droll, kPositive);
-  number(resolution("knot"), problem.resolution.knot, Range::kLength);
+  number(resolution("knot"), problem.resolution.knot, Range::kNonNegative);
   number(resolution("arc"), problem.resolution.arc, kPositive);
   const Field field = root("limits");
   const Limits& limits = problem.limits;

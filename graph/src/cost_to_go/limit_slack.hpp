@@ -8,6 +8,8 @@ namespace swivel {
 /// that cost beyond it; and where turns are told apart, along a path that passed all obstacles but
 /// for its turns.
 inline constexpr double kSlack = 0.5, kSlackOfTurns = 0.05;
+/// That share where steps are halved: each of many searches raises the cost by little.
+inline constexpr double kSlackOfHalves = 0.03;
 
 /// Returns the share for the first sweep of a lattice.
 [[nodiscard]] inline double first_slack(const Lattice& lattice) {

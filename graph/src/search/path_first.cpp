@@ -37,6 +37,7 @@ SearchOutcome first_valid_path(CostToGo& cost_to_go, const Validity& validity,
                                SearchCounters& counters, FirstPath first) {
   for (;;) {
     cost_to_go.budget().poll();
+    if (validator.ends_at(cost_to_go.best())) return {};
     const int slot =
         first == FirstPath::kCheapest ? cheapest_slot(cost_to_go) : cost_to_go.first_slot();
     const SlotPath path =
@@ -77,7 +78,10 @@ int deepest_valid_layer(CostToGo& cost_to_go, Validity& validity, const PathFirs
     if (optimistic < 0) return -1;
     const std::int64_t removed = cost_to_go.verdicts().removed();
     cost_to_go.sweep(optimistic);
+    KnotSearch* const knots = options.knots;
+    if (knots) knots->bound = kUnreachable;
     if (!search(cost_to_go, validity, options, counters, {}).path.empty()) return optimistic;
+    if (knots && !knots->narrow.empty()) return -1;
     if (cost_to_go.verdicts().removed() == removed)
       throw std::logic_error("a round of the search removed nothing: it would never end");
   }

@@ -94,12 +94,13 @@ bool PathValidator::valid(const SlotPath& path) {
   if (!all_valid<NodeQuestion>(layers, layers, node_unknown, node)) return false;
   if (!validity_.asks_edges()) return true;
   const auto edge_unknown = [&](int i) {
-    return verdicts_.edge(i, path[at(i)], path[at(i + 1)]) == Verdict::kUnknown;
+    return !is_long(i) && verdicts_.edge(i, path[at(i)], path[at(i + 1)]) == Verdict::kUnknown;
   };
   const auto edge = [&](int i) {
     return EdgeQuestion{i, path[at(i)], path[at(i + 1)], joints(i), joints(i + 1)};
   };
-  return all_valid<EdgeQuestion>(layers - 1, layers, edge_unknown, edge);
+  return all_valid<EdgeQuestion>(layers - 1, layers, edge_unknown, edge) &&
+         (!options_.knots || long_edges_valid(path, joints));
 }
 
 template <class Question, class Unknown, class Make>
@@ -125,6 +126,32 @@ bool PathValidator::all_valid(int count, int layers, const Unknown& unknown, con
       failed_on_path_.insert(failed_on_path_.end(), failed.begin(), failed.end());
     expand_failed_region(failed);
   }
+  return all;
+}
+
+template <class Joints>
+bool PathValidator::long_edges_valid(const SlotPath& path, const Joints& joints) {
+  KnotSearch& noted = *options_.knots;
+  if (noted.bound == kUnreachable) noted.bound = cost_to_go_.best();
+  const int last = static_cast<int>(path.size()) - 1;
+  bool all = true;
+  const std::size_t narrow_before = noted.narrow.size();
+  std::vector<EdgeQuestion> some;
+  for (int layer = 0; layer < last;) {
+    cost_to_go_.budget().poll(Stage::kSearch, layer, last);
+    some.clear();
+    for (; layer < last && some.size() < batch(); ++layer) {
+      const int a = path[static_cast<std::size_t>(layer)],
+                b = path[static_cast<std::size_t>(layer) + 1];
+      if (is_long(layer) && verdicts_.edge(layer, a, b) == Verdict::kUnknown)
+        some.push_back({layer, a, b, joints(layer), joints(layer + 1)});
+    }
+    for (const EdgeQuestion& failed : ask(std::span<const EdgeQuestion>(some))) {
+      noted.narrow.insert(failed.layer);
+      all = false;
+    }
+  }
+  noted.idle = noted.narrow.size() > narrow_before ? 0 : noted.idle + 1;
   return all;
 }
 
@@ -263,7 +290,7 @@ void PathValidator::expand_failed_region(const std::vector<EdgeQuestion>& failed
   };
   std::deque<Edge> frontier;
   const auto add = [&](int layer, int a, int b) {
-    if (a >= 0 && b >= 0) frontier.push_back({layer, a, b});
+    if (a >= 0 && b >= 0 && !is_long(layer)) frontier.push_back({layer, a, b});
   };
   const auto add_neighbours = [&](const EdgeQuestion& x) {
     const auto shifted = [&](int layer, int slot, int by) {

@@ -56,7 +56,7 @@ class PathValidator {
   /// again.
   void ask_again(const PriorFailures& failures) {
     ask(std::span<const NodeQuestion>(failures.nodes));
-    ask(std::span<const EdgeQuestion>(failures.edges));
+    if (!options_.knots) ask(std::span<const EdgeQuestion>(failures.edges));
   }
   /// Asks about nodes before the first sweep and removes those that fail. Ends where fewer than
   /// half of some fail.
@@ -64,6 +64,11 @@ class PathValidator {
   /// Notes the value of the cost-to-go when the first candidate is taken. Later calls do nothing.
   void begin() {
     if (first_cost_ == kUnreachable) first_cost_ = cost_to_go_.best();
+  }
+  /// Returns whether the search ends before paths of a cost (KnotSearch::band, most).
+  [[nodiscard]] bool ends_at(double cost) const {
+    const KnotSearch* const knots = options_.knots;
+    return knots && (cost >= knots->most || knots->idle >= knots->patience);
   }
   /// Asks what the path's nodes cost, where that is not known, and notes it. Returns true where a
   /// node costs more than was known. A node's neighbours often cost as much, and each round in
@@ -96,6 +101,13 @@ class PathValidator {
   /// are valid.
   template <class Question, class Unknown, class Make>
   bool all_valid(int count, int layers, const Unknown& unknown, const Make& question);
+  /// Returns whether edges of a step are asked about only on paths that are valid otherwise.
+  [[nodiscard]] bool is_long(int step) const { return options_.knots && lattice_.can_halve(step); }
+  /// Asks about all long edges of a path that is valid otherwise, and notes at which steps some are
+  /// not valid (PathFirstOptions::knots). Returns true if all are valid. `joints` returns those of
+  /// the path's node in a layer.
+  template <class Joints>
+  bool long_edges_valid(const SlotPath& path, const Joints& joints);
   [[nodiscard]] bool any_left(int layer, int& slots_left) const;
   /// Returns true if all nodes of a layer fail as this one did. A few that lie apart are asked
   /// about first, then the others in order, since questions about neighbours take less.

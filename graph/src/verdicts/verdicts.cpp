@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "swivel/graph/verdicts/verdicts.hpp"
 
+#include <algorithm>
+
 namespace swivel {
 
 Verdicts::Verdicts(const Lattice& lattice) : lattice_(&lattice) {
@@ -77,6 +79,38 @@ void Verdicts::remove_edge(int layer, int a, int b, double cost) {
   removed_edges_[layer].tails[a].push_back({b, cost});
   removed_edges_[layer].heads[b].push_back({a, cost});
   pending[layer].tails.push_back(a);
+}
+
+void Verdicts::take(const Verdicts& others, std::span<const int> layer_here) {
+  const auto next_to = [&](std::size_t k) {
+    return k + 1 < layer_here.size() && layer_here[k + 1] == layer_here[k] + 1;
+  };
+  std::vector<int> removed;
+  for (std::size_t k = 0; k < layer_here.size(); ++k) {
+    const int layer = static_cast<int>(k), here = layer_here[k];
+    removed.clear();
+    for (int slot = 0; slot < lattice_->slots(here); ++slot) {
+      const Verdict known = others.node(layer, slot);
+      if (known == Verdict::kValid) keep_node(here, slot);
+      if (known == Verdict::kRemoved) removed.push_back(slot);
+    }
+    remove_nodes(here, removed);
+    const RemovedEdges* const edges = next_to(k) ? others.removed_edges(layer) : nullptr;
+    if (!edges) continue;
+    for (const auto& [a, heads] : edges->tails)
+      for (const HalfEdge& edge : heads)
+        remove_edge(here, a, edge.other,
+                    lattice_->edge_cost(lattice_->delta(*lattice_->node(here, a),
+                                                        *lattice_->node(here + 1, edge.other))));
+  }
+  for (const auto& [edge, verdict] : others.edge_) {
+    if (verdict != Verdict::kValid) continue;
+    const auto k = static_cast<std::size_t>(
+        std::upper_bound(others.first_.begin(), others.first_.end(), edge.node) -
+        others.first_.begin() - 1);
+    if (next_to(k))
+      keep_edge(layer_here[k], static_cast<int>(edge.node - others.first_[k]), edge.b);
+  }
 }
 
 std::vector<double>& Verdicts::costs_of(int layer) {

@@ -172,12 +172,13 @@ Json layout_json(const Resolution& resolution, EdgeMode edges,
       if (joints[j]) told.push_back(j);
     told_apart.push_back(std::move(told));
   }
-  return {{"resolution",
-           {{"ds", resolution.ds},
-            {"dphi", resolution.dphi},
-            {"dalpha", resolution.dalpha},
-            {"arc", resolution.arc},
-            {"arcs", resolution.arcs}}},
+  Json steps = {{"ds", resolution.ds},
+                {"dphi", resolution.dphi},
+                {"dalpha", resolution.dalpha},
+                {"arc", resolution.arc},
+                {"arcs", resolution.arcs}};
+  if (resolution.knot.value_or(0) > 0) steps["knot"] = *resolution.knot;
+  return {{"resolution", std::move(steps)},
           {"edges", edges == EdgeMode::kContinuous ? "continuous" : "nodes"},
           {"windings", std::move(told_apart)}};
 }
@@ -198,7 +199,7 @@ void read_layout(const Reader& read, const Parsed& json, const std::string& key,
                  std::vector<std::array<bool, kDof>>& windings) {
   const std::string within = key + "resolution.";
   const Parsed& steps = read.at(json, "resolution", key);
-  read.only(steps, within, {"ds", "dphi", "dalpha", "arc", "arcs"});
+  read.only(steps, within, {"ds", "dphi", "dalpha", "arc", "arcs", "knot"});
   const auto real = [&](const char* name) {
     return read.real(read.at(steps, name, within), within + name);
   };
@@ -206,6 +207,7 @@ void read_layout(const Reader& read, const Parsed& json, const std::string& key,
   resolution.dphi = real("dphi");
   resolution.dalpha = real("dalpha");
   resolution.arc = real("arc");
+  if (steps.contains("knot")) resolution.knot = real("knot");
   resolution.arcs = read.truth(read.at(steps, "arcs", within), within + "arcs");
   const std::string edges = read.text(read.at(json, "edges", key), key + "edges");
   if (edges != "continuous" && edges != "nodes")
@@ -339,6 +341,7 @@ std::string to_json(const InfeasibilityCertificate& certificate) {
     head["reversed"] = certificate.reversed;
   }
   head.update(layout_json(certificate.resolution, certificate.edges, certificate.windings));
+  if (!certificate.halvings.empty()) head["halved"] = certificate.halvings;
   head["path_layers"] = certificate.layers;
   head["witnesses"] = witnesses_json(certificate);
   std::string text = line(head);
@@ -355,8 +358,8 @@ InfeasibilityCertificate load_certificate(const std::filesystem::path& file) {
   const Parsed json = parsed_certificate(read, file, kFormat);
   InfeasibilityCertificate certificate;
   read.only(json, "",
-            {"format", "stroke", "reversed", "resolution", "edges", "windings", "path_layers",
-             "witnesses", "layers"});
+            {"format", "stroke", "reversed", "resolution", "edges", "windings", "halved",
+             "path_layers", "witnesses", "layers"});
   if (json.contains("reversed") && !json.contains("stroke"))
     read.fail("reversed", "is given without a stroke", "what plan --certificate writes");
   if (json.contains("stroke")) {
@@ -364,6 +367,13 @@ InfeasibilityCertificate load_certificate(const std::filesystem::path& file) {
     certificate.reversed = read.truth(read.at(json, "reversed", ""), "reversed");
   }
   read_layout(read, json, "", certificate.resolution, certificate.edges, certificate.windings);
+  if (json.contains("halved")) {
+    for (const Parsed& steps : read.list(json["halved"], "halved")) {
+      std::set<int>& halved = certificate.halvings.emplace_back();
+      for (const Parsed& step : read.list(steps, "halved"))
+        halved.insert(read.small(step, "halved"));
+    }
+  }
   certificate.layers = read.small(read.at(json, "path_layers", ""), "path_layers");
   read_cut(read, json, "", certificate);
   return certificate;

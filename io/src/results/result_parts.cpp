@@ -15,6 +15,11 @@ Json lattice_json(const LatticeInfo& lattice, bool solved) {
     if (lattice.grid->rolls) json["rolls"] = *lattice.grid->rolls;
   }
   if (lattice.arcs) json["arcs"] = *lattice.arcs;
+  if (const auto& knots = lattice.knots) {
+    json["knot_bound"] = knots->bound ? Json(*knots->bound) : Json(nullptr);
+    json["knot_gap"] = solved && knots->gap ? Json(*knots->gap) : Json(nullptr);
+    json["halved"] = knots->halved;
+  }
   json["nodes"] = lattice.nodes;
   json["merged_waypoints"] = lattice.merged_waypoints;
   json["cost"] = solved ? Json(lattice.cost) : Json(nullptr);

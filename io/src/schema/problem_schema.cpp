@@ -195,10 +195,12 @@ Schema resolution() {
            "counts as 1 rad"},
           {"droll", number(kTurn), "rad", otherwise(d.droll),
            "widest step of `path.roll`, of arms of seven joints"},
-          {"knot", number(kLength), "m", otherwise(d.knot),
-           "with `path.roll`, of arms of seven joints: about how far along the path roll and arm "
-           "angle are chosen anew; "
-           "between they change linearly, and every layer is tested"},
+          {"knot", or_null(number(kExtent)), "m",
+           in_words("0.025 with `path.roll`, of arms of seven joints; 0 of arms without an arm "
+                    "angle"),
+           "about how far along the path the redundancy is chosen anew: roll and arm angle of arms "
+           "of seven joints with `path.roll`, places on arcs of arms without an arm angle; between "
+           "it changes evenly, and every layer is tested; 0: at every layer"},
       });
 }
 

@@ -135,6 +135,15 @@ Schema lattice() {
           key_of_some("rolls", integer(),
                       "of S-R-S arms with `path.roll`: turns of the tool that are told apart"),
           key_of_some("arcs", integer(), "of self-motion, in all layers, of other arms"),
+          key_of_some("knot_bound", or_null(number()),
+                      "no path through nodes of these layers costs less, whatever layers between "
+                      "have nodes besides; `null` where nodes have costs, or where there is none; "
+                      "of arms without an arm angle with `resolution.knot`"),
+          key_of_some("knot_gap", or_null(number()),
+                      "by what share of `knot_bound` the path costs more"),
+          key_of_some("halved", boolean(),
+                      "whether knots were added wherever that might have been worth it; `false`: "
+                      "time was up before"),
           key("nodes", integer(), "in all layers"),
           key("merged_waypoints", integer(), "equal neighbours"),
           key("cost", or_null(number()),

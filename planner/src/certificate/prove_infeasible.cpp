@@ -323,7 +323,10 @@ InfeasibilityCertificate prove_infeasible(const PlanView& view, const Budget& bu
                                view.problem.limits.edges, DistanceProofs::kOn, executor, 1, budget);
     HookedValidity hooked(view.lattice, validity, {check, nullptr}, budget);
     SearchCounters counters;
-    static_cast<void>(path_first(*own, hooked, {}, counters));
+    KnotSearch knots;  // so that no edge is asked about that might be halved
+    PathFirstOptions options;
+    options.knots = &knots;
+    static_cast<void>(path_first(*own, hooked, options, counters));
   }
   InfeasibilityCertificate certificate =
       find_cut(view.lattice, view.world, view.world.edge_rule(view.robot.radii()),
@@ -331,6 +334,7 @@ InfeasibilityCertificate prove_infeasible(const PlanView& view, const Budget& bu
   certificate.resolution = view.problem.resolution;
   certificate.edges = view.problem.limits.edges;
   certificate.windings = view.lattice.joints_with_windings();
+  certificate.halvings = view.lattice.halvings();
   return certificate;
 }
 

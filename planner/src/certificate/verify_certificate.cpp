@@ -50,6 +50,11 @@ class Verifier {
                     number(certificate_.first_layer + count - 1) + ": the problem has 0 to " +
                     number(lattice_.layers() - 1)};
     for (int k = 0; k < count; ++k) {
+      // With nodes between, other paths may lead through: the removed edge is no proof of none.
+      if (k > 0 && !certificate_.band[index(k)].edges.empty() &&
+          lattice_.can_halve(certificate_.first_layer + k - 1))
+        throw Refused{"layer " + number(certificate_.first_layer + k) +
+                      ": edges are removed on a step that may be halved"};
       here_ = read(certificate_.first_layer + k, certificate_.band[index(k)]);
       if (k == 0)
         every_node_is_told(here_);
@@ -237,6 +242,7 @@ void require_same_layout(const PathProblem& problem, const StatedLayout& stated,
   require(own.dphi == other.dphi, "resolution.dphi (--dphi)");
   require(own.dalpha == other.dalpha, "resolution.dalpha");
   require(own.arc == other.arc, "resolution.arc");
+  require(own.knot.value_or(0) == other.knot.value_or(0), "resolution.knot");
   require(own.arcs == other.arcs, "resolution.arcs (--arcs, --no-arcs)");
   require(problem.limits.edges == stated.edges, "limits.edges (--edges)");
   require(layers == stated.layers, "the number of layers");
@@ -281,8 +287,20 @@ CertificateCheck verify_certificate(const PreparedRobot& robot, const PathProble
   robot.require_prepared_for(problem);
   const Chain& chain = robot.arm().chain;
   const ToolPath path = path_within_scale(problem, chain, budget);
-  std::unique_ptr<Lattice> lattice = make_lattice(chain, robot.arm_class(), path, problem, budget);
-  require_same_layout(problem, {&certificate.resolution, certificate.edges, certificate.layers},
+  const PathProblem of_lattice =
+      certificate.stroke.empty() ? problem : on_all_layers(problem, robot.arm_class());
+  std::unique_ptr<Lattice> lattice =
+      make_lattice(chain, robot.arm_class(), path, of_lattice, budget);
+  for (const std::set<int>& steps : certificate.halvings) {
+    std::unique_ptr<Lattice> finer;
+    if (steps.empty() || *steps.begin() < 0 || *steps.rbegin() + 1 >= lattice->layers() ||
+        !(finer = lattice->with_knots(steps, budget)))
+      throw InputError(problem.source,
+                       "certificate: halved: steps that have no layers between: it is of another "
+                       "lattice: allowed are those of plan --certificate");
+    lattice = std::move(finer);
+  }
+  require_same_layout(of_lattice, {&certificate.resolution, certificate.edges, certificate.layers},
                       lattice->layers());
   CertificateCheck result;
   result.complete = robot.arm_class().complete();

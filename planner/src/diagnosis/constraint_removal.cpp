@@ -307,10 +307,17 @@ std::optional<int> ConstraintRemoval::to_give_up(const std::vector<Pass>& passes
 
 std::optional<ConstraintRemoval::Answer> ConstraintRemoval::find(double most_us) {
   most_us_ = constraints_.spent_us() + most_us;
+  constexpr int kNear = 8, kFar = 64;
   std::vector<int> begins;  // first layers of the passes, the nearest first
-  for (const int back : {8, 64})
+  for (const int back : {kNear, kFar})
     if (deepest_ > back) begins.push_back(deepest_ - back);
   begins.push_back(0);
+  // Between knots every move has many rows, so a pass about nodes first keeps to steps that have
+  // none, where these lead far enough.
+  std::vector<int> of_nodes = begins;
+  int near = wanted_;
+  while (near > std::max(0, deepest_ - kNear) && !lattice_.can_halve(near - 1)) --near;
+  if (near < deepest_ && near > begins.front()) of_nodes.insert(of_nodes.begin(), near);
 
   std::vector<Cause> given_up;
   ConstraintSet waived = 0;
@@ -323,7 +330,7 @@ std::optional<ConstraintRemoval::Answer> ConstraintRemoval::find(double most_us)
       if (c) answer = {pass.witness[index(*c)].cause, pass.furthest[index(*c)], {}};
       return c.has_value();
     };
-    for (const int from : begins) {
+    for (const int from : of_nodes) {
       const Pass pass = run_pass(from, waived, kBarsNodes, false);
       if (take(pass, What::kOnNodes) || take(pass, What::kObject)) break;
     }

@@ -11,14 +11,14 @@
 #include <utility>
 
 #include "job/job_lift.hpp"
-#include "job/order/order_estimate.hpp"
 #include "job/lift_offs/plan_lift_offs.hpp"
+#include "job/order/order_estimate.hpp"
 #include "job/transitions/job_transitions.hpp"
 #include "measure/measure_rows.hpp"
 #include "plan/answer.hpp"
-#include "plan/search_settings.hpp"
 #include "plan/keeps_branch.hpp"
 #include "plan/search.hpp"
+#include "plan/search_settings.hpp"
 #include "plan/stopwatch.hpp"
 #include "plan/told_turns.hpp"
 #include "swivel/core/base/angle.hpp"
@@ -89,7 +89,7 @@ struct PlannedRun {
   PlannedRun(const StrokeRun& of, const Stroke& stroke, PathProblem p, const PreparedRobot& robot,
              const World& w, const Budget& budget)
       : run(of),
-        problem(std::move(p)),
+        problem(on_all_layers(std::move(p), robot.arm_class())),
         world(&w),
         rule(w.edge_rule(robot.radii())),
         path(path_within_scale(problem, robot.arm().chain, budget)) {
@@ -293,6 +293,9 @@ class JobPlan {
   void describe() {
     SpecialPairs pairs;
     add_lines(robot_warnings(robot_, job_.arm()), result_.warnings);
+    add_lines(unused_key_warnings(unused_knot(robot_.arm_class(), "strokes of jobs"),
+                                  problem_of_run(job_, runs_.front()->run)),
+              result_.warnings);
     for (const auto& run : runs_) {
       add_lines(unused_key_warnings(unused_keys(chain_, robot_.arm_class()), run->problem),
                 result_.warnings);

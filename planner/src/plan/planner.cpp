@@ -11,8 +11,8 @@
 #include "diagnosis/diagnosis.hpp"
 #include "measure/measure_rows.hpp"
 #include "plan/answer.hpp"
-#include "plan/search_settings.hpp"
 #include "plan/search.hpp"
+#include "plan/search_settings.hpp"
 #include "plan/stopwatch.hpp"
 #include "plan/told_turns.hpp"
 #include "swivel/core/base/angle.hpp"
@@ -26,6 +26,7 @@
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/problem/validate.hpp"
 #include "swivel/graph/cost_to_go/cost_to_go.hpp"
+#include "swivel/graph/eager/eager_validity.hpp"
 #include "swivel/planner/plan/plan_view.hpp"
 #include "swivel/planner/robot/planning_arm.hpp"
 #include "validity/collision_validity.hpp"
@@ -82,6 +83,16 @@ std::vector<TrajectoryRow> partial_rows(const Lattice& lattice, SlotPath path) {
   std::vector<TrajectoryRow> rows;
   for (; !path.empty() && rows.empty(); path.pop_back()) rows = lattice.path_rows(path);
   return rows;
+}
+
+/// Returns the layer of `finer` that each layer of `coarser` is.
+std::vector<int> layers_in(const Lattice& coarser, const Lattice& finer) {
+  std::vector<int> here;
+  for (int layer = 0, at = 0; layer < coarser.layers(); ++layer) {
+    while (finer.layer_of_rows(at) < coarser.layer_of_rows(layer)) ++at;
+    here.push_back(at);
+  }
+  return here;
 }
 
 bool same_pose(const Pose& a, const Pose& b) {
@@ -285,6 +296,10 @@ struct Planner::Impl {
     result.warnings = *of_robot;
     for (const auto& lines :
          {unused_key_warnings(unused_keys(robot->arm().chain, robot->arm_class()), problem),
+          unused_key_warnings(problem.closed && !problem.start
+                                  ? unused_knot(robot->arm_class(), "closed paths")
+                                  : std::vector<UnusedKey>(),
+                              problem),
           path_warnings(*robot, problem, layout->path, *world)})
       result.warnings.insert(result.warnings.end(), lines.begin(), lines.end());
     SpecialPairs pairs;
@@ -300,13 +315,13 @@ struct Planner::Impl {
     // The cost of a state by the caller's hook may depend on joint 7, which must then be free.
     const bool rests = layout->coaxial && !options.hooks.cost;
     if (rests || !layout->coaxial) {
-      Found found = search(layout->first, !single_use, rule, options, budget, result);
+      Found found = search_knots(layout->first, !single_use, rule, options, budget, result);
       found = tell_turns_apart(std::move(found), rule, options, budget, result);
       if (!layout->coaxial || !found.decided || !found.outcome.path.empty()) return found;
     }
     layout->second = Searched{layout->free_lattice(*robot, problem, budget), nullptr};
     result.lattice = info_of(*layout->second->lattice, robot->arm_class());
-    Found found = search(*layout->second, false, rule, options, budget, result);
+    Found found = search_knots(*layout->second, false, rule, options, budget, result);
     return tell_turns_apart(std::move(found), rule, options, budget, result);
   }
   /// Returns `found`, the answer of the lattice searched last, if its path is the answer of the
@@ -335,7 +350,7 @@ struct Planner::Impl {
       }
       layout->second = std::move(wound);
       result.lattice = info_of(*layout->second->lattice, robot->arm_class());
-      found = search(*layout->second, false, rule, options, budget, result, &failed);
+      found = search_knots(*layout->second, false, rule, options, budget, result, &failed);
     }
   }
   /// Notes what a search asked.
@@ -347,18 +362,132 @@ struct Planner::Impl {
     counters.proved_free = collision.proved_free;
     counters.proved_colliding = collision.proved_colliding;
   }
+  /// What a search begins with, of a search before it.
+  struct Known {
+    /// What add_failed_nodes() found before turns were told apart.
+    const std::vector<std::vector<int>>* failed = nullptr;
+    /// A search of the lattice from which this one was made by halving steps.
+    const Searched* coarser = nullptr;
+  };
+  /// Searches a lattice and, as long as that is worth it, lattices whose narrow steps between knots
+  /// are halved (KnotSearch). Returns the cheapest answer of all, the coarsest of equal ones;
+  /// layout->last() is its lattice. With an answer it ends a while before the budget does, so that
+  /// there is time to prove it. Other parameters as of search().
+  Found search_knots(Searched& searched, bool remembered, const EdgeRule& rule,
+                     const PlanOptions& options, const Budget& budget, PlanResult& result,
+                     const std::vector<std::vector<int>>* failed = nullptr) {
+    KnotSearch knots;
+    if (!halves(*searched.lattice))
+      return search(searched, remembered, rule, options, budget, result, {failed}, nullptr);
+    Found best = search(searched, remembered, rule, options, budget, result, {failed}, &knots);
+    LatticeInfo::Knots told;
+    std::vector<Searched> finer;
+    std::size_t level_of_best = 0;  // 0: `searched`
+    double least = row_cost(*searched.lattice, best);
+    for (bool decided = best.decided; decided && told.halved;) {
+      const Searched& last = finer.empty() ? searched : finer.back();
+      if (!worth_halving(knots, best.outcome) && !ends_between_knots(*last.lattice, best)) break;
+      Found found;
+      Searched next;
+      const KnotSearch before = std::exchange(knots, {});
+      knots.most = least;
+      const Budget time = best.outcome.path.empty() ? budget : most_of(budget, options);
+      try {
+        next.lattice = before.narrow.empty()
+                           ? with_all_layers_about(*last.lattice, *best.deepest, time)
+                           : last.lattice->with_knots(before.narrow, time);
+        found = search(next, false, rule, options, time, result, {nullptr, &last},
+                       halves(*next.lattice) ? &knots : nullptr);
+      } catch (const Stopped&) {
+        if (!next.lattice) {  // the time was up before there was one
+          best.decided = !best.outcome.path.empty();
+          told.halved = false;
+          break;
+        }
+      }
+      // What is searched no more makes room.
+      if (!finer.empty() && finer.size() != level_of_best) finer.back() = {};
+      finer.push_back(std::move(next));
+      decided = found.decided;
+      if (!decided && !best.outcome.path.empty()) {
+        told.halved = false;
+        break;
+      }
+      // Without a step to halve the answer is the best of all.
+      if (!halves(*finer.back().lattice) && !found.outcome.path.empty())
+        knots.bound = found.outcome.cost;
+      if (knots.bound == kUnreachable) knots.bound = before.bound;
+      const double cost = row_cost(*finer.back().lattice, found);
+      if (cost < least || best.outcome.path.empty()) {
+        best = std::move(found);
+        least = cost;
+        level_of_best = finer.size();
+      }
+    }
+    if (level_of_best > 0) layout->second = std::move(finer[level_of_best - 1]);
+    result.lattice = info_of(*layout->last().lattice, robot->arm_class());
+    if (knots.bound != kUnreachable && !layout->last().lattice->has_node_costs() &&
+        !options.hooks.cost)
+      told.bound = knots.bound;
+    result.lattice.knots = told;
+    return best;
+  }
+  /// Returns a budget that ends somewhat before that of the plan does.
+  [[nodiscard]] static Budget most_of(const Budget& budget, const PlanOptions& options) {
+    constexpr double kShare = 0.8;
+    std::optional<double> seconds = budget.seconds_left();
+    if (seconds) *seconds *= kShare;
+    return Budget(seconds, options.cancel, options.stop, &options.progress);
+  }
+  /// Returns the cost of a path's rows, as far as turns of joints are told apart; kUnreachable
+  /// where none was found.
+  static double row_cost(const Lattice& lattice, const Found& found) {
+    if (found.outcome.path.empty()) return kUnreachable;
+    return cost_of_rows(lattice, found.outcome.path, lattice.path_rows(found.outcome.path),
+                        found.outcome.cost);
+  }
+  /// Returns whether a lattice has no path, and layers without nodes lie beside the furthest one
+  /// that is reached: then it is not known which of them ends all paths.
+  [[nodiscard]] static bool ends_between_knots(const Lattice& lattice, const Found& found) {
+    if (!found.outcome.path.empty() || !found.deepest || *found.deepest < 0) return false;
+    const int at = *found.deepest;
+    return (at > 0 && lattice.can_halve(at - 1)) ||
+           (at + 1 < lattice.layers() && lattice.can_halve(at));
+  }
+  /// Returns a lattice that has nodes at all layers between the knots before and after a layer.
+  [[nodiscard]] static std::unique_ptr<Lattice> with_all_layers_about(const Lattice& lattice,
+                                                                      int layer,
+                                                                      const Budget& budget) {
+    const int first = lattice.layer_of_rows(std::max(0, layer - 1)),
+              last = lattice.layer_of_rows(std::min(layer + 1, lattice.layers() - 1));
+    std::unique_ptr<Lattice> finer;
+    for (;;) {
+      const Lattice& now = finer ? *finer : lattice;
+      std::set<int> steps;
+      for (int step = 0; step + 1 < now.layers(); ++step)
+        if (now.layer_of_rows(step) >= first && now.layer_of_rows(step) < last) steps.insert(step);
+      auto next = now.with_knots(steps, budget);
+      if (!next) return finer;
+      finer = std::move(next);
+    }
+  }
+  [[nodiscard]] static bool halves(const Lattice& lattice) {
+    for (int step = 0; step + 1 < lattice.layers(); ++step)
+      if (lattice.can_halve(step)) return true;
+    return false;
+  }
   /// Searches one lattice. `remembered`: use what earlier plans found out, and keep what this one
-  /// does. `failed`: what add_failed_nodes() found before turns were told apart.
+  /// does. `knots` as search_lazily() takes it.
   Found search(Searched& searched, bool remembered, const EdgeRule& rule,
                const PlanOptions& options, const Budget& budget, PlanResult& result,
-               const std::vector<std::vector<int>>* failed = nullptr) {
+               const Known& known, KnotSearch* knots) {
     const Lattice& lattice = *searched.lattice;
     // the memory keeps one clearance of an edge, not one of each row
     remembered = remembered && !lattice.has_layers_between();
     Executor& threads = threads_of(options);
     Counters counters;
     Found found;
-    if (was_eager) {
+    if (was_eager && !knots) {
       if (options.planner == PlannerKind::kEager) refuse_if_too_large(lattice, problem.source);
       CollisionValidity validity(lattice, *world, rule, problem.limits.edges,
                                  distance_proofs_of(options), threads, 0, budget);
@@ -371,12 +500,17 @@ struct Planner::Impl {
     std::unique_ptr<CostToGo>& cost_to_go = searched.cost_to_go;
     if (!cost_to_go)
       cost_to_go = make_cost_to_go(lattice, pruning_of(lattice), budget, std::move(recycled));
-    if (single_use) cost_to_go->set_single_use();
+    if (single_use || known.coarser) cost_to_go->set_single_use();
     const bool shares = shares_work(lattice);
     if (shares) threads.start_helpers();
     cost_to_go->share(shares ? shared_with(threads) : ParallelFor());
     const bool swept = cost_to_go->restart(budget);
-    if (failed) remove_failed_nodes(*failed, lattice, cost_to_go->verdicts());
+    if (known.failed) remove_failed_nodes(*known.failed, lattice, cost_to_go->verdicts());
+    if (known.coarser && known.coarser->cost_to_go) {
+      const std::vector<int> here = layers_in(*known.coarser->lattice, lattice);
+      cost_to_go->verdicts().take(known.coarser->cost_to_go->verdicts(), here);
+      if (!options.hooks.cost) cost_to_go->bound_by_coarser(*known.coarser->cost_to_go, here);
+    }
     std::optional<World> changed;
     if (remembered) {
       memory.begin(++plans, met, *world, problem.scene);
@@ -387,11 +521,13 @@ struct Planner::Impl {
                                budget, remembered ? &memory : nullptr,
                                changed ? &*changed : nullptr);
     HookedValidity hooked(lattice, validity, options.hooks, budget);
+    std::optional<EagerValidity> eager;
+    if (was_eager) eager.emplace(lattice, hooked, true, budget);
     const std::vector<FailureHint> asked_before =
         remembered ? std::exchange(failure_hints, {}) : std::vector<FailureHint>();
-    found =
-        search_lazily(*cost_to_go, swept, hooked, remembered ? memory.failures() : PriorFailures{},
-                      asked_before, options, counters, result.time_ms);
+    found = search_lazily(*cost_to_go, swept, eager ? static_cast<Validity&>(*eager) : hooked,
+                          remembered ? memory.failures() : PriorFailures{}, asked_before, options,
+                          counters, result.time_ms, knots);
     count(validity, counters);
     add_counters(counters, result.counters);
     return found;
@@ -439,6 +575,8 @@ struct Planner::Impl {
       require_same_turns(lattice, result.trajectory, problem.source);
       measure_margins(robot->arm().chain, layout->path, result.trajectory, result);
       result.cost = cost_of_rows(lattice, path, result.trajectory, result.cost);
+      if (auto& knots = result.lattice.knots; knots && knots->bound)
+        knots->gap = *knots->bound > 0 ? std::max(0.0, result.cost / *knots->bound - 1) : 0;
     }
     result.time_ms["plan"] = whole.lap();
     watch.lap();

@@ -43,10 +43,14 @@ SlotPath proved_part(const SlotPath& path, const Verdicts& verdicts, const Valid
 
 }  // namespace
 
+bool worth_halving(const KnotSearch& knots, const SearchOutcome& best) {
+  return !knots.narrow.empty() && (best.path.empty() || best.cost > kWorthHalving * knots.bound);
+}
+
 Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity,
                     const PriorFailures& first, std::span<const FailureHint> failure_hints,
                     const PlanOptions& options, Counters& counters,
-                    std::map<std::string, double>& time_ms) {
+                    std::map<std::string, double>& time_ms, KnotSearch* knots) {
   Stopwatch watch;
   Found found;
   SearchCounters searched;
@@ -61,28 +65,33 @@ Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity,
     path_first_options = {.batch = 16,
                           .min_questions_per_iteration = 128,
                           .overlap_region_questions = shares_work(cost_to_go.lattice())};
+  path_first_options.knots = knots;
   try {
     if (!swept) {
       check_failure_hints(cost_to_go, validity, failure_hints);
       cost_to_go.sweep(cost_to_go.lattice().layers() - 1);
     }
-    time_ms["sweep"] = watch.lap();
+    time_ms["sweep"] += watch.lap();
     found.outcome = path_first(cost_to_go, validity, path_first_options, searched, first);
     const bool closes = cost_to_go.lattice().is_closed() && !found.outcome.path.empty();
     if (closes) {
+      path_first_options.knots = nullptr;
       found.deepest = cost_to_go.lattice().layers() - 1;
       found.valid_path = found.outcome.path;  // an open path, should there be no closed one
       found.outcome = closed_path_first(cost_to_go, validity, path_first_options, searched);
     }
     found.decided = true;
     if (!closes || !found.outcome.path.empty()) found.valid_path = found.outcome.path;
-    time_ms["search"] = watch.lap();
-    if (found.outcome.path.empty() && !closes) {
+    time_ms["search"] += watch.lap();
+    if (found.outcome.path.empty() && !closes &&
+        !(knots && (knots->most != kUnreachable || worth_halving(*knots, {})))) {
       cost_to_go.budget().tell(Stage::kReach);
+      const double bound = knots ? knots->bound : kUnreachable;
       found.deepest = deepest_valid_layer(cost_to_go, validity, path_first_options, searched);
+      if (knots) knots->bound = bound;
       // the path tried last is valid
       if (*found.deepest >= 0) found.valid_path = searched.candidate;
-      time_ms["reach"] = watch.lap();
+      time_ms["reach"] += watch.lap();
     }
   } catch (const Stopped&) {
     found.valid_path = proved_part(searched.candidate, cost_to_go.verdicts(), validity);

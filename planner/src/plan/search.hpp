@@ -63,11 +63,20 @@ struct Found {
 /// Searches with the lazy or the parallel planner (options.planner). `swept`: whether cost_to_go
 /// already holds the values of the lattice without removals; otherwise `failure_hints` are
 /// validated before it is swept. `first`: failures of earlier searches, which are tested first.
-/// Fills `counters` and the times of the stages, ms, in `time_ms`.
+/// `knots`: where to note what the search says of steps between knots; null: nowhere. If it notes
+/// that halving steps may lead to a path, the deepest layer is not sought. Fills `counters` and the
+/// times of the stages, ms, in `time_ms`.
 [[nodiscard]] Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity,
                                   const PriorFailures& first,
                                   std::span<const FailureHint> failure_hints,
                                   const PlanOptions& options, Counters& counters,
-                                  std::map<std::string, double>& time_ms);
+                                  std::map<std::string, double>& time_ms,
+                                  KnotSearch* knots = nullptr);
+
+/// What a path costs, over the bound of its lattice's knots, to be good enough.
+inline constexpr double kWorthHalving = 1.01;
+/// Returns whether a lattice with more knots may have a path, where none was found, or one that is
+/// cheaper by more than a hundredth than the best one: whether steps are narrow that can be halved.
+[[nodiscard]] bool worth_halving(const KnotSearch& knots, const SearchOutcome& best);
 
 }  // namespace swivel

@@ -28,7 +28,8 @@ struct ArmInCell {
     if (is_given)
       lattice = std::make_unique<GivenLattice>(chain, path, problem, prepared.given_rows());
     else
-      lattice = make_lattice(chain, robot.arm_class(), path, problem, budget);
+      lattice = make_lattice(chain, robot.arm_class(), path,
+                             on_all_layers(problem, robot.arm_class()), budget);
   }
   ArmInCell(const ArmInCell&) = delete;
   ArmInCell& operator=(const ArmInCell&) = delete;

@@ -600,7 +600,8 @@ void bind_task(py::module_& m) {
       .member("arcs", &Resolution::arcs, "Nodes on arcs of arm angles that the grid misses.")
       .member("droll", &Resolution::droll, "Of the roll, of arms of seven joints, rad.")
       .member("knot", &Resolution::knot,
-              "m, between layers at which such arms choose roll and arm angle anew.")
+              "m, between layers at which arms with a free roll, and those that have no arm angle, "
+              "choose their redundancy anew; 0: at every layer; None: the default.")
       .finish();
   PlainStruct<Limits>(m, "Limits",
                       "What is to be kept, as keywords: docs/formats.md. None: no such limit, or "

@@ -38,6 +38,7 @@ class Plain {
         world_(robot.world(), problem),
         rule_(world_.edge_rule(robot.radii())),
         query_(world_) {
+    for (const auto& steps : certificate.halvings) lattice_ = lattice_->with_knots(steps, {});
     for (const auto& joints : certificate.windings) lattice_ = lattice_->with_windings(joints);
   }
   [[nodiscard]] const Lattice& lattice() const { return *lattice_; }
@@ -67,6 +68,7 @@ class Plain {
       if (std::abs(nodes[j]) > most + 2 * lattice_->fit_error()[j] || std::abs(rows[j]) > most)
         return false;
     }
+    if (lattice_->can_halve(layer)) return true;  // for whatever nodes there might be between
     if (!lattice_->follows_path(layer, a, qa, b, qb)) return false;
     return limits.edges == EdgeMode::kNodes || !edge_blocked_plain(query_, rule_, qa, qa + rows);
   }
@@ -346,7 +348,7 @@ PathProblem beyond_a_turn(const TestRobot& robot, Random& random) {
 /// Counts the certificates that are verified and the forged ones that are refused.
 struct CertificateTally {
   int infeasible = 0, started = 0, continuous = 0, by_nodes = 0, by_edges = 0, arcs = 0,
-      windings = 0, bytes = 0, still_proofs = 0;
+      windings = 0, knots = 0, bytes = 0, still_proofs = 0;
   std::map<std::string, int> forged, kinds;
 };
 
@@ -398,6 +400,7 @@ void tally_certificate(const PathProblem& problem, const InfeasibilityCertificat
   tally.by_nodes += nodes;
   tally.by_edges += edges;
   tally.windings += !certificate.windings.empty();
+  tally.knots += !certificate.halvings.empty();
 }
 
 /// Forges the certificate in every way that it allows and expects each forgery to be refused, or to
@@ -445,10 +448,10 @@ void check_certificate(const PathProblem& problem, int trial, Random& random,
 void expect_tally(const CertificateTally& tally, int wanted) {
   std::printf(
       "%d certificates of %d verified twice: %d with a start, %d with motions, %d on arcs (%d with "
-      "windings); by nodes %d, by "
+      "windings, %d with steps halved); by nodes %d, by "
       "edges %d; at most %d bytes\n",
       tally.infeasible, wanted, tally.started, tally.continuous, tally.arcs, tally.windings,
-      tally.by_nodes, tally.by_edges, tally.bytes);
+      tally.knots, tally.by_nodes, tally.by_edges, tally.bytes);
   for (const auto& [kind, times] : tally.kinds) std::printf("  %s in %d\n", kind.c_str(), times);
   int refused = 0;
   for (const auto& [name, times] : tally.forged)
@@ -487,6 +490,41 @@ TEST(InfeasibilityCertificate, IsVerifiedByTheCheckAndByBruteForceAndForgedOnesA
   }
   std::filesystem::remove(file);
   expect_tally(tally, wanted);
+}
+
+/// Where nodes lie at knots, a proof removes no edge of a step that has layers between, so that it
+/// holds whatever knots there are besides.
+TEST(InfeasibilityCertificate, OfArcsWithKnotsIsVerifiedAndForgedOnesAreRefused) {
+  const std::uint64_t base = seed("Cut.Knots");
+  const std::vector<TestRobot> robots{arm_of_data("panda_like"), arm_of_data("gen3_like"),
+                                      arm_of_data("fetch_like")};
+  const auto file = std::filesystem::temp_directory_path() /
+                    ("swivel_cut_knots_test_" + std::to_string(getpid()) + ".json");
+  const int wanted = trials(100);
+  CertificateTally tally;
+  for (int trial = 0; tally.infeasible < wanted; ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    PathProblem problem =
+        random_task(robots[static_cast<std::size_t>(trial) % robots.size()], true, random);
+    problem.resolution.knot = problem.resolution.ds;
+    problem.resolution.ds /= 2 + random.below(5);
+    problem.limits.joint_step = random.uniform(0.05, 0.3);
+    check_certificate(problem, trial, random, file,
+                      "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " +
+                          std::to_string(trial) + " " + problem.source,
+                      tally);
+    if (HasFatalFailure()) return;
+  }
+  std::filesystem::remove(file);
+  int refused = 0;
+  for (const auto& [name, times] : tally.forged) refused += times;
+  std::printf(
+      "%d certificates verified twice, %d with steps halved, by edges %d; %d forged ones refused, "
+      "%d prove the same\n",
+      tally.infeasible, tally.knots, tally.by_edges, refused, tally.still_proofs);
+  EXPECT_GE(tally.knots, at_least_among(wanted / 8));
+  EXPECT_GE(refused, at_least_among(4 * wanted));
+  EXPECT_LE(tally.still_proofs, refused / 50 + 1);
 }
 
 /// A check of the caller's is a witness that only those can verify who have it.

@@ -109,8 +109,8 @@ void draw_lattice(PathProblem& problem, Nodes nodes, double length, Random& rand
     resolution.knot = resolution.ds * random.uniform(1.5, 4);
     resolution.droll = random.uniform(0.5, 1.0);
     resolution.dphi = problem.source == "windings" ? 1.2 : random.uniform(0.6, 0.9);
-    limits.arm_slope = random.uniform(0.8, 2) * resolution.dphi / resolution.knot;
-    limits.roll_slope = random.uniform(1.01, 2) * resolution.droll / resolution.knot;
+    limits.arm_slope = random.uniform(0.8, 2) * resolution.dphi / *resolution.knot;
+    limits.roll_slope = random.uniform(1.01, 2) * resolution.droll / *resolution.knot;
   } else {
     limits.arm_slope = Limits().arm_slope;
     limits.roll_slope = random.uniform(5, 15);

@@ -65,9 +65,9 @@ PathProblem roll_problem(const TestRobot& robot, Random& random) {
   problem.resolution.dphi = robot.name == "windings" ? 1.2 : random.uniform(0.5, 0.9);
   problem.resolution.dalpha = random.uniform(0.3, 0.6);
   problem.limits.arm_slope =
-      random.uniform(0.8, 2) * problem.resolution.dphi / problem.resolution.knot;
+      random.uniform(0.8, 2) * problem.resolution.dphi / *problem.resolution.knot;
   problem.limits.roll_slope =
-      random.uniform(1.01, 2) * problem.resolution.droll / problem.resolution.knot;
+      random.uniform(1.01, 2) * problem.resolution.droll / *problem.resolution.knot;
   if (problem.limits.tool_path_error) problem.limits.tool_path_error = random.uniform(0.02, 0.1);
   if (problem.limits.tool_angle_error) problem.limits.tool_angle_error = random.uniform(0.1, 0.4);
   if (problem.waypoints.size() > 3) problem.waypoints.resize(3);
@@ -772,7 +772,7 @@ TEST(RollLattice, RefusesWhatItCannotDo) {
   wrong.limits.step_error = 0.1;
   expect(wrong, "limits.step_error: allowed without path.roll");
   wrong = problem;
-  wrong.limits.roll_slope = 0.1 * wrong.resolution.droll / wrong.resolution.knot;
+  wrong.limits.roll_slope = 0.1 * wrong.resolution.droll / *wrong.resolution.knot;
   expect(wrong, "limits.roll_slope: is less than a step");
   wrong = problem_for(offset_robot());
   wrong.waypoints = problem.waypoints;

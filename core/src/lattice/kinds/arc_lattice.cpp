@@ -9,9 +9,12 @@
 
 #include "lattice/circle_turns.hpp"
 #include "lattice/given_posture.hpp"
+#include "lattice/kinds/arc_layers.hpp"
+#include "lattice/knots.hpp"
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/timeline.hpp"
+#include "swivel/core/lattice/problem_path.hpp"
 
 namespace swivel {
 
@@ -19,396 +22,7 @@ namespace {
 
 using Point = ExplicitLattice::Point;
 
-constexpr double kCatch = 0.025;  // rad, Euclidean: an image this near an arc belongs to it
-constexpr double kOnArc = 1e-3;   // rad: on the arc where it was looked for first
-constexpr double kFill = 1.5;     // spacings: wider gaps are filled
-constexpr double kCrowded = 0.5;  // spacings: nearer images are dropped
-
-/// A place on the arcs of a layer.
-struct Place {
-  int arc = -1, chord = 0;
-  double u = 0;       // of the chord
-  double length = 0;  // weighted, from the first point of the arc
-  double away = 0;    // rad
-};
-
-double difference(double a, double b) {
-  const double d = a - b;
-  return std::abs(d) < 3 ? d : wrap_angle(d);  // a small d needs no division
-}
-
-/// Returns difference() of all joints; of the one that slides (0-based; -1: none) plainly a - b.
-Config difference(const Config& a, const Config& b, int slide) {
-  Config d;
-  for (int j = 0; j < kDof; ++j) d[j] = difference(a[j], b[j]);
-  if (slide >= 0) d[slide] = a[slide] - b[slide];
-  return d;
-}
-
-double length_at(const SelfMotionArc& arc, int chord, double u) {
-  const auto k = static_cast<std::size_t>(chord);
-  return arc.length[k] + u * (arc.length[k + 1] - arc.length[k]);
-}
-
-/// Returns the point of a chord's cubic that is nearest to q; none beyond `within`, rad.
-std::optional<Place> nearest_on(const SelfMotionArc& arc, int number, int chord, const Config& q,
-                                double within) {
-  const auto k = static_cast<std::size_t>(chord), next = (k + 1) % arc.q.size();
-  const Config line = difference(arc.q[next], arc.q[k], arc.slide),
-               way = difference(q, arc.q[k], arc.slide);
-  const double length2 = joint_squared_norm(line);
-  const double along = joint_dot(way, line) / length2;
-  if (along < -0.5 || along > 1.5) {
-    if (joint_squared_norm(way) > within * within &&
-        joint_squared_norm(way - line) > within * within)
-      return std::nullopt;
-  }
-  double u = std::clamp(along, 0.0, 1.0);
-  Config off = difference(q, arc.at(chord, u), arc.slide);
-  if (joint_squared_norm(off) > 0.04 * length2 + within * within) return std::nullopt;
-  // Two steps along the chord: the cubic runs nearly at its speed.
-  for (int step = 0; step < 2; ++step) {
-    const double more = std::clamp(u + joint_dot(off, line) / length2, 0.0, 1.0);
-    if (more == u) break;
-    u = more;
-    off = difference(q, arc.at(chord, u), arc.slide);
-  }
-  const double away = joint_norm(off);
-  if (away > within) return std::nullopt;
-  return Place{number, chord, u, length_at(arc, chord, u), away};
-}
-
-/// A box about a chord's cubic, on the circle of each joint. That of a slide may be nearer than it
-/// is by whole turns.
-struct Box {
-  int arc, chord;
-  Config middle, radius;
-  /// False where the cubic is surely further than `within` from q.
-  [[nodiscard]] bool maybe_near(const Config& q, double within) const {
-    // the last joints turn most: they rule out most chords
-    for (int j = kDof - 1; j >= 0; --j) {
-      const double apart = std::abs(q[j] - middle[j]), reach = radius[j] + within;
-      if (apart > reach && apart < kTwoPi - reach) return false;
-    }
-    return true;
-  }
-};
-
-/// Returns the box about a chord's cubic, which lies in the hull of its four control points (Farin
-/// 2002, Bezier's form).
-Box box_of(const SelfMotionArc& arc, int number, int chord) {
-  constexpr double kRounding = 1e-9;  // rad: far above that of a few operations on angles
-  const auto k = static_cast<std::size_t>(chord), next = (k + 1) % arc.q.size();
-  const Config d = difference(arc.q[next], arc.q[k], arc.slide);
-  const double third = joint_norm(d) / 3;
-  const Config first = third * arc.tangent[k], second = d - third * arc.tangent[next];
-  const Config low = first.cwiseMin(second).cwiseMin(d).cwiseMin(0),
-               high = first.cwiseMax(second).cwiseMax(d).cwiseMax(0);
-  return {number, chord, arc.q[k] + (low + high) / 2,
-          (high - low) / 2 + Config::Constant(kRounding)};
-}
-
-/// Finds the nearest points of a layer's arcs.
-class Finder {
- public:
-  explicit Finder(const std::vector<SelfMotionArc>& arcs) : arcs_(arcs) {
-    for (int number = 0; number < static_cast<int>(arcs_.size()); ++number) {
-      first_.push_back(boxes_.size());
-      for (int chord = 0; chord < arcs_[static_cast<std::size_t>(number)].chords(); ++chord)
-        boxes_.push_back(box_of(arcs_[static_cast<std::size_t>(number)], number, chord));
-    }
-  }
-  /// Returns the place that is nearest to q; none beyond kCatch. Looks first near where the last
-  /// question was answered, since nodes are asked about in the order of their arcs.
-  [[nodiscard]] std::optional<Place> find(const Config& q) {
-    if (last_.arc >= 0) {
-      const SelfMotionArc& arc = arcs_[static_cast<std::size_t>(last_.arc)];
-      for (int ahead = 0; ahead < 4; ++ahead) {
-        int chord = last_.chord + ahead;
-        if (chord >= arc.chords()) {
-          if (!arc.closed) break;
-          chord %= arc.chords();
-        }
-        if (!boxes_[first_[static_cast<std::size_t>(last_.arc)] + static_cast<std::size_t>(chord)]
-                 .maybe_near(q, kOnArc))
-          continue;
-        if (const auto place = nearest_on(arc, last_.arc, chord, q, kOnArc); place && inner(*place))
-          return last_ = *place;
-      }
-    }
-    std::optional<Place> best;
-    for (const Box& box : boxes_) {
-      const double within = best ? best->away : kCatch;
-      if (!box.maybe_near(q, within)) continue;
-      const auto place =
-          nearest_on(arcs_[static_cast<std::size_t>(box.arc)], box.arc, box.chord, q, within);
-      if (place && (!best || place->away < best->away)) best = place;
-    }
-    if (best) last_ = *best;
-    return best;
-  }
-
- private:
-  static bool inner(const Place& place) { return place.u > 0 && place.u < 1; }
-  const std::vector<SelfMotionArc>& arcs_;
-  std::vector<Box> boxes_;          // of all chords, arc by arc
-  std::vector<std::size_t> first_;  // box of each arc
-  Place last_;
-};
-
-/// A node of the layer before, carried on to this one, or a node at a roll that is asked for.
-struct Image {
-  Place place;
-  Config q;
-  int source = -1;     // slot of the layer before that it continues; -1: none
-  bool asked = false;  // for its roll, however near the arc's end
-};
-
-/// The nodes of the layer before that are carried on: one of each pair of twins, whose twins come
-/// behind them. The start of a path follows as the last.
-struct Before {
-  std::vector<Config> q;
-  std::vector<int> slots;  // of each; -1 for one that is only carried on, since its roll is outside
-                           // the layer's window
-  int nodes = 0;           // slots of the layer
-  bool start = false;
-  [[nodiscard]] int start_slot() const { return nodes; }
-  /// Returns the slot of a node's twin; for the start a slot that nothing else has.
-  [[nodiscard]] int flipped_of(int slot) const {
-    if (slot < 0) return slot;
-    return slot >= nodes ? slot ^ 1 : slot < nodes / 2 ? slot + nodes / 2 : slot - nodes / 2;
-  }
-};
-
-/// Adds the points of an arc at which the roll has a value, rad. They take the place of images
-/// nearby.
-void add_at_roll(double roll, const SelfMotion& motion, const Pose& tool, const SelfMotionArc& arc,
-                 int number, double spacing, std::vector<Image>& images) {
-  for (int chord = 0; chord < arc.chords(); ++chord) {
-    const auto k = static_cast<std::size_t>(chord), next = (k + 1) % arc.q.size();
-    const double from = wrap_angle(arc.q[k][kDof - 1] - roll),
-                 to = from + difference(arc.q[next][kDof - 1], arc.q[k][kDof - 1]);
-    if (!(from < 0 && to > 0) && !(from > 0 && to < 0)) continue;
-    double low = 0, high = 1;
-    for (int halving = 0; halving < 30; ++halving) {
-      const double u = (low + high) / 2;
-      (wrap_angle(arc.at(chord, u)[kDof - 1] - roll) * from > 0 ? low : high) = u;
-    }
-    const auto q = motion.with_joint_at(arc.at(chord, low), tool, kDof - 1, roll);
-    if (!q) continue;
-    Image added{{number, chord, low, length_at(arc, chord, low), 0}, *q, -1, true};
-    double nearest = kCrowded * spacing;
-    std::erase_if(images, [&](const Image& image) {
-      const double gap = std::abs(image.place.length - added.place.length);
-      if (gap < nearest) nearest = gap, added.source = image.source;
-      return gap < kCrowded * spacing;
-    });
-    images.push_back(added);
-  }
-}
-
-/// Fills a layer with nodes on its arcs.
-class Layer {
- public:
-  Layer(const SelfMotion& motion, const Pose& tool, double spacing)
-      : motion_(motion), tool_(tool), spacing_(spacing) {}
-  /// Appends the nodes of one arc: its `images`, which are in the order of their lengths, less
-  /// those that crowd, and nodes that fill the gaps between them.
-  void place(const SelfMotionArc& arc, const std::vector<Image>& images);
-  /// Leaves out the points whose roll the layer does not allow. Returns the slot of each point that
-  /// there was; -1 for those left out.
-  std::vector<int> keep_window(const PathLayer& layer);
-  /// Adds the twins of all points.
-  void add_flipped(const Before& before);
-  /// Links the points with those of the layer before, `last`, that they continue.
-  void link(const Before& before, std::vector<Point>& last);
-  std::vector<Point> points;
-
- private:
-  void add(const Config& q, double length) {
-    Point point;
-    point.q = q;
-    points.push_back(point);
-    lengths_.push_back(length);
-  }
-  /// Lists the images that are not too near to one before them, or to an end of the arc.
-  [[nodiscard]] std::vector<const Image*> uncrowded(const SelfMotionArc& arc,
-                                                    const std::vector<Image>& images) const;
-  /// Appends points between two lengths, at most kFill spacings apart.
-  void fill(const SelfMotionArc& arc, double from, double to);
-  /// Appends the ends of an open arc, the images kept, and points that fill the gaps.
-  void fill_open(const SelfMotionArc& arc, const std::vector<const Image*>& kept);
-  /// Appends the images kept of a closed arc and points that fill the gaps, by their lengths.
-  void fill_closed(const SelfMotionArc& arc, const std::vector<const Image*>& kept);
-  /// Links the points of an arc, from slot `first` on, with their neighbours.
-  void link_along_arc(std::size_t first, bool closed);
-  /// Links the slot that an image continues with the point that continues it, of those from slot
-  /// `first` on: the image itself, or what stands in its way.
-  void link_to_source(const SelfMotionArc& arc, std::size_t first, const Image& image);
-
-  const SelfMotion& motion_;
-  const Pose& tool_;
-  double spacing_;
-  std::vector<double> lengths_;
-  // slot of the layer before, and the slot here that continues it
-  std::vector<std::pair<int, int>> continued_;
-};
-
-void Layer::fill(const SelfMotionArc& arc, double from, double to) {
-  const int parts = static_cast<int>(std::ceil((to - from) / (kFill * spacing_) - 1e-9));
-  for (int part = 1; part < parts; ++part) {
-    double length = from + part * ((to - from) / parts);
-    if (length >= arc.whole()) length -= arc.whole();  // of closed arcs
-    const auto above = std::upper_bound(arc.length.begin(), arc.length.end(), length);
-    const int chord =
-        std::clamp(static_cast<int>(above - arc.length.begin()) - 1, 0, arc.chords() - 1);
-    const auto k = static_cast<std::size_t>(chord);
-    const double u = (length - arc.length[k]) / (arc.length[k + 1] - arc.length[k]);
-    if (const auto q = motion_.point(arc, chord, u, tool_)) add(*q, length);
-  }
-}
-
-std::vector<const Image*> Layer::uncrowded(const SelfMotionArc& arc,
-                                           const std::vector<Image>& images) const {
-  const double whole = arc.whole(), least = kCrowded * spacing_;
-  std::vector<const Image*> kept;
-  for (const Image& image : images) {
-    const double at = image.place.length;
-    if (image.asked) {
-      // It has been given room.
-    } else if (arc.closed) {
-      if (!kept.empty() && (at - kept.back()->place.length < least ||
-                            kept.front()->place.length + whole - at < least))
-        continue;
-    } else if (at - (kept.empty() ? 0 : kept.back()->place.length) < least || whole - at < least) {
-      continue;
-    }
-    kept.push_back(&image);
-  }
-  return kept;
-}
-
-void Layer::fill_open(const SelfMotionArc& arc, const std::vector<const Image*>& kept) {
-  add(arc.q.front(), 0);
-  double before = 0;
-  for (const Image* image : kept) {
-    fill(arc, before, image->place.length);
-    add(image->q, image->place.length);
-    before = image->place.length;
-  }
-  fill(arc, before, arc.whole());
-  add(arc.q.back(), arc.whole());
-}
-
-void Layer::fill_closed(const SelfMotionArc& arc, const std::vector<const Image*>& kept) {
-  if (kept.empty()) {
-    add(arc.q.front(), 0);
-    fill(arc, 0, arc.whole());
-    return;
-  }
-  const auto first = static_cast<std::ptrdiff_t>(points.size());
-  for (std::size_t k = 0; k < kept.size(); ++k) {
-    const double at = kept[k]->place.length, next = k + 1 < kept.size()
-                                                        ? kept[k + 1]->place.length
-                                                        : kept[0]->place.length + arc.whole();
-    add(kept[k]->q, at);
-    fill(arc, at, next);
-  }
-  // What was filled across the wrap goes to the front.
-  const auto wrapped = std::find_if(lengths_.begin() + first + 1, lengths_.end(),
-                                    [&](double x) { return x < kept[0]->place.length; });
-  const auto by = wrapped - lengths_.begin();
-  std::rotate(points.begin() + first, points.begin() + by, points.end());
-  std::rotate(lengths_.begin() + first, wrapped, lengths_.end());
-}
-
-void Layer::link_along_arc(std::size_t first, bool closed) {
-  const std::size_t end = points.size();
-  const bool round = closed && end > first + 1;
-  for (std::size_t k = first; k < end; ++k) {
-    if (k > first || round) points[k].beside[0] = static_cast<int>(k > first ? k - 1 : end - 1);
-    if (k + 1 < end || round) points[k].beside[1] = static_cast<int>(k + 1 < end ? k + 1 : first);
-  }
-}
-
-void Layer::link_to_source(const SelfMotionArc& arc, std::size_t first, const Image& image) {
-  const std::size_t end = points.size();
-  const auto begin = lengths_.begin() + static_cast<std::ptrdiff_t>(first);
-  const auto above = static_cast<std::size_t>(
-      std::lower_bound(begin, lengths_.end(), image.place.length) - lengths_.begin());
-  std::size_t nearest = first;
-  double least_gap = -1;
-  // the ends of a closed arc are neighbours
-  for (const std::size_t k : {first, above - 1, above, end - 1}) {
-    if (k < first || k >= end) continue;
-    double gap = std::abs(lengths_[k] - image.place.length);
-    if (arc.closed) gap = std::min(gap, arc.whole() - gap);
-    if (least_gap < 0 || gap < least_gap) {
-      least_gap = gap;
-      nearest = k;
-    }
-  }
-  if (points[nearest].along[0] < 0 || least_gap == 0) points[nearest].along[0] = image.source;
-  continued_.emplace_back(image.source, static_cast<int>(nearest));
-}
-
-void Layer::place(const SelfMotionArc& arc, const std::vector<Image>& images) {
-  const std::size_t first = points.size();
-  const std::vector<const Image*> kept = uncrowded(arc, images);
-  if (arc.closed)
-    fill_closed(arc, kept);
-  else
-    fill_open(arc, kept);
-  link_along_arc(first, arc.closed);
-  for (const Image& image : images)
-    if (image.source >= 0) link_to_source(arc, first, image);
-}
-
-void Layer::link(const Before& before, std::vector<Point>& last) {
-  for (const auto& [source, slot] : continued_) {
-    if (!before.start)
-      last[static_cast<std::size_t>(source)].along[1] = slot;
-    else if (source == before.start_slot())
-      last[0].along[1] = slot;
-  }
-  if (!before.start) return;
-  for (Point& point : points) point.along[0] = point.along[0] == before.start_slot() ? 0 : -1;
-}
-
-std::vector<int> Layer::keep_window(const PathLayer& layer) {
-  std::vector<int> slot_of;
-  std::vector<Point> kept;
-  for (const Point& point : points) {
-    const bool keeps = layer.in_window(point.q[kDof - 1]);
-    slot_of.push_back(keeps ? static_cast<int>(kept.size()) : -1);
-    if (keeps) kept.push_back(point);
-  }
-  if (kept.size() == points.size()) return slot_of;
-  const auto moved = [&](int slot) {
-    return slot < 0 ? -1 : slot_of[static_cast<std::size_t>(slot)];
-  };
-  for (Point& point : kept)
-    for (int& slot : point.beside) slot = moved(slot);
-  for (auto& [source, slot] : continued_) slot = moved(slot);
-  std::erase_if(continued_, [](const auto& link) { return link.second < 0; });
-  points = std::move(kept);
-  return slot_of;
-}
-
-void Layer::add_flipped(const Before& before) {
-  const auto half = points.size(), links = continued_.size();
-  const auto by = static_cast<int>(half);
-  for (std::size_t k = 0; k < half; ++k) {
-    Point point = points[k];
-    point.q = motion_.flipped(point.q);
-    for (int& slot : point.beside)
-      if (slot >= 0) slot += by;
-    point.along[0] = before.flipped_of(point.along[0]);
-    points.push_back(point);
-  }
-  for (std::size_t k = 0; k < links; ++k)
-    continued_.emplace_back(before.flipped_of(continued_[k].first), continued_[k].second + by);
-}
+constexpr double kTurnOfKnots = 0.2;  // rad: how far the path may turn from a knot to the next
 
 std::array<double, kDof> scaling(const Chain& chain, const Cost& cost) {
   std::array<double, kDof> weights = joint_weights(cost, chain);
@@ -426,77 +40,6 @@ Vector3d foot(const Chain& chain, std::size_t axis, std::size_t other) {
   return chain.point[axis] + (d.cross(b).dot(n) / sine2) * a;
 }
 
-/// The arcs of a layer, and the images on each of them.
-struct ArcsOfLayer {
-  std::vector<SelfMotionArc> arcs;
-  std::vector<std::vector<Image>> images;
-};
-
-/// Sets the images on the arcs of a layer: nodes `moved` of the layer before, each where it comes
-/// to lie nearest. Returns those that lie on none of the arcs.
-std::vector<Config> place_images(const SelfMotion& motion, const Pose& tool, const Before& before,
-                                 const std::vector<std::optional<Config>>& moved,
-                                 ArcsOfLayer& layer) {
-  layer.images.assign(layer.arcs.size(), {});
-  std::vector<Config> strays;
-  Finder finder(layer.arcs);
-  for (std::size_t k = 0; k < moved.size(); ++k) {
-    auto q = moved[k];
-    if (!q) continue;
-    int source = before.slots[k];
-    const bool inside = motion.canonical(*q);
-    if (motion.is_flipped(*q)) {  // it came over to the other side, and its twin to this one
-      q = motion.flipped(*q);
-      source = before.flipped_of(source);
-    }
-    const auto place = finder.find(*q);
-    if (!place) {
-      if (inside) strays.push_back(*q);
-      continue;
-    }
-    if (!inside) {
-      q = motion.point(layer.arcs[static_cast<std::size_t>(place->arc)], place->chord, place->u,
-                       tool);
-      if (!q) continue;
-    }
-    layer.images[static_cast<std::size_t>(place->arc)].push_back({*place, *q, source});
-  }
-  return strays;
-}
-
-/// Returns the arcs of a layer with the images of the nodes of the layer before.
-ArcsOfLayer arcs_of(const SelfMotion& motion, const LockMethod& method, const Pose& tool,
-                    const Before& before, SelfMotion::Least least) {
-  // Without a closed form the arcs of the layer before are followed.
-  std::vector<Config> followed;
-  const std::vector<std::optional<Config>> moved = motion.images(before.q, tool, least);
-  for (const auto& q : moved)
-    if (method.best < 0 && q) followed.push_back(*q);
-  ArcsOfLayer layer;
-  layer.arcs = motion.arcs(tool, followed, SelfMotion::Flipped::kOne);
-  std::vector<Config> strays = place_images(motion, tool, before, moved, layer);
-  if (strays.empty()) return layer;
-  // They lie on arcs of which the closed form shows nothing.
-  strays.insert(strays.end(), followed.begin(), followed.end());
-  layer.arcs = motion.arcs(tool, strays, SelfMotion::Flipped::kOne);
-  place_images(motion, tool, before, moved, layer);
-  return layer;
-}
-
-/// Adds images to an arc where the roll costs least, and at the ends of what it may be.
-void add_at_asked_rolls(const Chain& chain, const PathProblem& problem, const SelfMotion& motion,
-                        const PathLayer& layer, const SelfMotionArc& arc, int number,
-                        std::vector<Image>& images) {
-  const Roll& window = layer.window;
-  const JointLimit& limit = chain.limit.back();
-  const auto add = [&](double roll) {
-    add_at_roll(roll, motion, layer.tool, arc, number, problem.resolution.arc, images);
-  };
-  if (problem.cost.roll > 0) add(0);
-  if (window.lower > limit.lower) add(window.lower);
-  if (window.upper < limit.upper && window.upper > window.lower) add(window.upper);
-}
-
 /// Throws InputError unless the posture that the problem gives for an end of the path is within its
 /// limits and puts the tool there.
 void require_fits(PathEnd which, const PathProblem& problem, const Chain& chain,
@@ -505,18 +48,6 @@ void require_fits(PathEnd which, const PathProblem& problem, const Chain& chain,
   if (chain.roll)
     static_cast<void>(roll_of_given(which, problem, chain, path,
                                     {chain.limit.back().lower, chain.limit.back().upper}));
-}
-
-std::vector<Config> joints_of(const std::vector<Point>& points) {
-  std::vector<Config> joints;
-  for (const Point& point : points) joints.push_back(point.q);
-  return joints;
-}
-
-std::vector<int> numbers_below(std::size_t n) {
-  std::vector<int> numbers(n);
-  std::iota(numbers.begin(), numbers.end(), 0);
-  return numbers;
 }
 
 /// Returns the nodes of layer 0 as those of the last layer of a closed path. They continue no node
@@ -535,84 +66,88 @@ Point given_point(const SelfMotion& motion, const Config& q) {
   return point;
 }
 
+/// Returns the layer of a path, between two others, that is nearest to the middle of the way
+/// between them.
+int middle_layer(const ToolPath& path, int first, int last) {
+  const double middle = (path.layer(first).travel + path.layer(last).travel) / 2;
+  int nearest = first + 1;
+  for (int i = first + 2; i < last; ++i)
+    if (std::abs(path.layer(i).travel - middle) < std::abs(path.layer(nearest).travel - middle))
+      nearest = i;
+  return nearest;
+}
+
 }  // namespace
 
-ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& method,
-                                     const ToolPath& path, const PathProblem& problem,
-                                     const Budget& budget) {
+ArcLattice::Data ArcLattice::build(const Chain& chain, const LockMethod& method,
+                                   const ToolPath& whole, const PathProblem& problem,
+                                   const Budget& budget) {
   const TraceSpan span("arcs");
+  Data result;
+  std::vector<std::vector<Point>> points;
+  result.whole = &whole;
+  const double knot = problem.resolution.knot.value_or(kKnotOfArcs);
+  if (knot > 0 && !(whole.closed() && !problem.start))
+    result.set_knots(knots_along(whole, {knot, kTurnOfKnots, true}));
+  const ToolPath& path = result.path();
   if (problem.start) require_fits(PathEnd::kFirst, problem, chain, path);
   const bool ends_given = problem.end && !path.ends_early();
   if (ends_given) require_fits(PathEnd::kLast, problem, chain, path);
-  const SelfMotion motion(chain, method, problem.limits.joint_margin, scaling(chain, problem.cost));
-  // Nodes drift with the tool as the cost would have it.
-  const auto least = problem.cost.metric == CostMetric::kL2 ? SelfMotion::Least::kNorm
-                                                            : SelfMotion::Least::kLargest;
-  Layers result;
+  result.motion = std::make_shared<const SelfMotion>(chain, method, problem.limits.joint_margin,
+                                                     scaling(chain, problem.cost));
+  const SelfMotion& motion = *result.motion;
   for (std::size_t j = 0; j < kDof; ++j)
     result.circles[j] = motion.circles()[j] && !chain.limit[j].continuous;
-  const bool twins = motion.has_flipped_arcs();
-  Before before;
+  const ArcLayerMaker maker(chain, method, problem, motion);
+  CarriedNodes before;
   for (int i = 0; i < path.size(); ++i) {
     budget.poll();
     if (i + 1 == path.size() && ends_given) {  // the end is the only node, and continues none
-      result.points.push_back(
-          {given_point(motion, joints_given(PathEnd::kLast, problem, chain, path))});
+      points.push_back({given_point(motion, joints_given(PathEnd::kLast, problem, chain, path))});
       break;
     }
     if (i + 1 == path.size() && path.closed() && !problem.start) {
-      result.points.push_back(as_last_layer(result.points.front()));
+      points.push_back(as_last_layer(points.front()));
       break;
     }
-    const PathLayer& here = path.layer(i);
-    ArcsOfLayer found = arcs_of(motion, method, here.tool, before, least);
-    Layer layer(motion, here.tool, problem.resolution.arc);
-    for (std::size_t k = 0; k < found.arcs.size(); ++k) {
-      if (chain.roll)
-        add_at_asked_rolls(chain, problem, motion, here, found.arcs[k], static_cast<int>(k),
-                           found.images[k]);
-      std::stable_sort(
-          found.images[k].begin(), found.images[k].end(),
-          [](const Image& a, const Image& b) { return a.place.length < b.place.length; });
-      layer.place(found.arcs[k], found.images[k]);
-    }
-    std::vector<Config> nodes = joints_of(layer.points);
-    std::vector<int> slot_of = numbers_below(nodes.size());
-    if (chain.roll) slot_of = layer.keep_window(here);
-    if (twins) layer.add_flipped(before);
-    result.arcs += static_cast<std::int64_t>(found.arcs.size()) * (twins ? 2 : 1);
-    const int slots = static_cast<int>(layer.points.size());
+    ArcLayer made = maker.make(path.layer(i), before, i > 0 ? &points.back() : nullptr);
+    result.arcs += made.arcs;
+    before = std::move(made.carried);
     if (i == 0 && problem.start) {
       // The start is the only node of layer 0; the others are transported as if there were none.
       const Point start = given_point(motion, joints_given(PathEnd::kFirst, problem, chain, path));
-      nodes.push_back(start.q);
-      slot_of.push_back(slots);
-      before = {std::move(nodes), std::move(slot_of), slots, true};
-      result.points.push_back({start});
+      before.q.push_back(start.q);
+      before.slots.push_back(before.nodes);
+      before.start = true;
+      points.push_back({start});
       continue;
     }
-    if (i > 0) layer.link(before, result.points.back());
-    before = {std::move(nodes), std::move(slot_of), slots, false};
-    result.points.push_back(std::move(layer.points));
+    points.push_back(std::move(made.points));
   }
+  result.points = shared(std::move(points));
   return result;
+}
+
+void ArcLattice::Data::set_knots(std::vector<int> layers) {
+  path_of_knots = std::make_shared<const ToolPath>(whole->with_layers(layers));
+  knots = std::move(layers);
 }
 
 ArcLattice::ArcLattice(const Chain& chain, const LockMethod& method, const ToolPath& path,
                        const PathProblem& problem, const Budget& budget)
-    : ArcLattice(chain, method, path, problem, build(chain, method, path, problem, budget)) {}
+    : ArcLattice(chain, method, problem, build(chain, method, path, problem, budget)) {}
 
-ArcLattice::ArcLattice(const Chain& chain, const LockMethod& method, const ToolPath& path,
-                       const PathProblem& problem, Layers&& layers)
-    : ExplicitLattice(chain, path, problem, std::move(layers.points), layers.circles),
+ArcLattice::ArcLattice(const Chain& chain, const LockMethod& method, const PathProblem& problem,
+                       Data&& data)
+    : ExplicitLattice(chain, data.path(), problem, std::move(data.points), data.circles),
       method_(method),
       problem_(problem),
-      layers_{{},
-              layers.circles,
-              std::move(layers.windings),
-              std::move(layers.next),
-              std::move(layers.on_circles),
-              layers.arcs} {}
+      data_(std::move(data)) {
+  data_.points.clear();
+  if (!has_layers_between()) return;
+  steps_of_rows_ = step_bounds_along(chain, path_of_rows(), problem.limits, problem.resolution);
+  set_row_step_bounds(bounds_between_knots(data_.knots, steps_of_rows_));
+}
 
 int arc_branch(const Chain& chain, const LockMethod& method, const Config& q) {
   const auto J = chain.jacobian(q);
@@ -654,9 +189,9 @@ double ArcLattice::phi(int layer, int slot) const {
 }
 
 int ArcLattice::next_on_arc(int layer, int slot) const {
-  return layers_.next.empty()
+  return data_.next.empty()
              ? neighbour_in_redundancy(layer, slot, 1)
-             : layers_.next[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)];
+             : data_.next[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)];
 }
 
 std::optional<Config> ArcLattice::given(int layer) const {
@@ -664,10 +199,75 @@ std::optional<Config> ArcLattice::given(int layer) const {
   return layer == layers() - 1 ? end_ : std::nullopt;
 }
 
+bool ArcLattice::keeps_row(int i, const Config& from, const Config& to,
+                           InterpolatedEdge& fault) const {
+  using Fault = InterpolatedEdge::Fault;
+  fault.q = to;
+  const ToolPath& path = path_of_rows();
+  const double margin = limits_.joint_margin - kLimitTolerance;
+  for (std::size_t j = 0; j < kDof; ++j) {
+    const JointLimit& limit = chain_->limit[j];
+    const double x = to[static_cast<Eigen::Index>(j)];
+    const bool windowed = chain_->roll && j + 1 == kDof && !path.layer(i).in_window(x);
+    if (windowed || (!continuous_[j] && !(x >= limit.lower + margin && x <= limit.upper - margin)))
+      fault.joints |= static_cast<std::uint8_t>(1u << j);
+  }
+  const Config move = to - from;
+  const Config& most =
+      steps_of_rows_[steps_of_rows_.size() == 1 ? 0 : static_cast<std::size_t>(i - 1)];
+  const auto beyond = (move.cwiseAbs().array() > most.array()).eval();
+  if (fault.joints) {
+    fault.fault = Fault::kLimit;
+  } else if (!manipulable(to)) {
+    fault.fault = Fault::kManipulability;
+  } else if (chain_->roll && beyond[kDof - 1]) {
+    fault.fault = Fault::kRollSlope;
+    fault.roll = {std::abs(move[kDof - 1]), most[kDof - 1], most[kDof - 1] / limits_.roll_slope,
+                  false};
+  } else if (beyond.any()) {
+    fault.fault = Fault::kStep;
+  } else if (!keeps_path_error(*chain_, path, i - 1, from, move, limits_.tool_path_error)) {
+    fault.fault = Fault::kPathError;
+  } else if (!keeps_angle_error(*chain_, path, i - 1, from, move, limits_.tool_angle_error)) {
+    fault.fault = Fault::kAngleError;
+  }
+  return fault.fault == Fault::kNone;
+}
+
+Lattice::InterpolatedEdge ArcLattice::interpolate_edge(int layer, int, const Config& qa, int,
+                                                       const Config& qb) const {
+  InterpolatedEdge edge;
+  const int first = layer_of_rows(layer), last = layer_of_rows(layer + 1);
+  const ToolPath& path = path_of_rows();
+  const double begin = path.layer(first).travel, way = path.layer(last).travel - begin;
+  const Config chord = delta(qa, qb);
+  Config from = qa;
+  for (int i = first + 1; i <= last; ++i) {
+    std::optional<Config> to = qa + chord;
+    if (i < last)
+      to = data_.motion->image(qa + (path.layer(i).travel - begin) / way * chord,
+                               path.layer(i).tool);
+    if (!to) {
+      edge.fault = InterpolatedEdge::Fault::kNoIk;
+      return edge;
+    }
+    if (!keeps_row(i, from, *to, edge)) return edge;
+    if (i < last) edge.rows.push_back(*to);
+    from = *to;
+  }
+  return edge;
+}
+
 std::vector<Config> ArcLattice::followed(const std::vector<int>& slots) const {
   std::vector<Config> rows;
   for (std::size_t i = 0; i < slots.size(); ++i) {
     const Config& q = point(static_cast<int>(i), slots[i]).q;
+    if (i > 0 && has_layers_between()) {
+      const int before = static_cast<int>(i) - 1;
+      const InterpolatedEdge edge =
+          interpolate_edge(before, slots[i - 1], rows.back(), slots[i], q);
+      rows.insert(rows.end(), edge.rows.begin(), edge.rows.end());
+    }
     rows.push_back(i == 0 ? q : Config(rows.back() + delta(rows.back(), q)));
   }
   if (const auto start = given(0)) {
@@ -675,12 +275,12 @@ std::vector<Config> ArcLattice::followed(const std::vector<int>& slots) const {
     for (Config& q : rows) q += turns;
     rows.front() = *start;
   }
-  if (static_cast<int>(rows.size()) == layers()) turn_to_end(rows);
+  if (static_cast<int>(slots.size()) == layers()) turn_to_end(rows);
   return rows;
 }
 
 CircleTurns ArcLattice::turns_along(const std::vector<Config>& rows) const {
-  const bool ends = end_ && static_cast<int>(rows.size()) == layers();
+  const bool ends = end_ && static_cast<int>(rows.size()) == path_of_rows().size();
   return circle_turns(*this, circles(), rows, problem_.start.has_value(), ends ? &*end_ : nullptr);
 }
 
@@ -692,9 +292,20 @@ std::vector<Config> ArcLattice::path_joints(const std::vector<int>& slots) const
   return rows;
 }
 
+std::vector<TrajectoryRow> ArcLattice::path_rows(const std::vector<int>& slots) const {
+  if (!has_layers_between()) return ExplicitLattice::path_rows(slots);
+  std::vector<TrajectoryRow> rows;
+  const ToolPath& path = path_of_rows();
+  for (const Config& q : path_joints(slots))
+    rows.push_back({path.layer(static_cast<int>(rows.size())).s, arc_angle(chain(), q),
+                    arc_branch(chain(), method_, q), q});
+  count_from_waypoints(chain(), path, rows);
+  return rows;
+}
+
 void ArcLattice::slots_with_same_body_poses(int layer, int slot, unsigned groups,
                                             std::vector<int>& out) const {
-  if (layers_.on_circles.empty() || ExplicitLattice::shares_body_poses(groups))
+  if (data_.on_circles.empty() || ExplicitLattice::shares_body_poses(groups))
     return ExplicitLattice::slots_with_same_body_poses(layer, slot, groups, out);
   out.clear();
   const int node = slot_on_circles(layer, slot);
@@ -729,11 +340,62 @@ void ArcLattice::add_images(std::size_t joint, std::size_t first,
                images.begin() + static_cast<std::ptrdiff_t>(last));
 }
 
+std::unique_ptr<Lattice> ArcLattice::with_knots(const std::set<int>& steps,
+                                                const Budget& budget) const {
+  const TraceSpan span("more knots");
+  Data finer = data_;
+  finer.next.clear();
+  finer.on_circles.clear();
+  finer.windings.clear();
+  for (std::size_t j = 0; j < kDof; ++j)
+    finer.circles[j] = data_.motion->circles()[j] && !chain().limit[j].continuous;
+  finer.points = data_.unwound.empty() ? all_points() : data_.unwound;
+  finer.unwound.clear();
+  const ArcLayerMaker maker(chain(), method_, problem_, *data_.motion);
+  std::vector<int> knots = data_.knots;
+  for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
+    budget.poll();
+    const auto at = static_cast<std::ptrdiff_t>(*step) + 1;
+    const int first = knots[static_cast<std::size_t>(at) - 1],
+              last = knots[static_cast<std::size_t>(at)];
+    if (last - first < 2) continue;
+    const int middle = middle_layer(path_of_rows(), first, last);
+    auto &layer_before = finer.points[static_cast<std::size_t>(at) - 1],
+         &layer_after = finer.points[static_cast<std::size_t>(at)];
+    std::vector<Point> before = *layer_before, after = *layer_after;
+    for (Point& point : before)
+      point.along[1] = -1;  // those that lead to the layer inserted follow
+    ArcLayer made = maker.make(path_of_rows().layer(middle), maker.carried_from(before), &before);
+    finer.arcs += made.arcs;
+    for (Point& point : made.points)
+      if (const int source = point.along[0]; source >= 0)
+        point.along[1] = (*layer_before)[static_cast<std::size_t>(source)].along[1];
+    for (Point& point : after)
+      if (int& source = point.along[0]; source >= 0)
+        source = before[static_cast<std::size_t>(source)].along[1];
+    const auto share = [](std::vector<Point> points) {
+      return std::make_shared<const std::vector<Point>>(std::move(points));
+    };
+    layer_before = share(std::move(before));
+    layer_after = share(std::move(after));
+    finer.points.insert(finer.points.begin() + at, share(std::move(made.points)));
+    knots.insert(knots.begin() + at, middle);
+  }
+  if (knots.size() == data_.knots.size()) return nullptr;
+  finer.set_knots(std::move(knots));
+  finer.halvings.push_back(steps);
+  std::unique_ptr<Lattice> lattice(new ArcLattice(chain(), method_, problem_, std::move(finer)));
+  for (const Joints& told : data_.windings) lattice = lattice->with_windings(told);
+  lattice->take_clearances(limits());
+  return lattice;
+}
+
 std::unique_ptr<Lattice> ArcLattice::with_windings(const Joints& joints) const {
-  Layers wound;
-  wound.arcs = layers_.arcs;
-  wound.circles = circles();
-  wound.windings = layers_.windings;
+  Data wound = data_;
+  std::vector<std::vector<Point>> all;
+  wound.next.clear();
+  wound.on_circles.clear();
+  if (wound.unwound.empty()) wound.unwound = all_points();
   wound.windings.push_back(joints);
   for (std::size_t j = 0; j < kDof; ++j) wound.circles[j] = wound.circles[j] && !joints[j];
   std::vector<WoundPoint> images;
@@ -754,7 +416,7 @@ std::unique_ptr<Lattice> ArcLattice::with_windings(const Joints& joints) const {
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
       return images[a].turns < images[b].turns;
     });
-    auto& points = wound.points.emplace_back(images.size());
+    auto& points = all.emplace_back(images.size());
     auto& on_circles = wound.on_circles.emplace_back(images.size());
     place.resize(images.size());
     for (std::size_t k = 0; k < order.size(); ++k) {
@@ -774,8 +436,8 @@ std::unique_ptr<Lattice> ArcLattice::with_windings(const Joints& joints) const {
             next[place[a]] = static_cast<int>(place[b]);
     }
   }
-  return std::unique_ptr<Lattice>(
-      new ArcLattice(chain(), method_, path(), problem_, std::move(wound)));
+  wound.points = shared(std::move(all));
+  return std::unique_ptr<Lattice>(new ArcLattice(chain(), method_, problem_, std::move(wound)));
 }
 
 }  // namespace swivel

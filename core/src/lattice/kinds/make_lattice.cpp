@@ -30,6 +30,11 @@ std::unique_ptr<Lattice> make_lattice(const Chain& chain, const ArmClass& arm, c
   return std::make_unique<ArcLattice>(chain, arm.lock, path, problem, budget);
 }
 
+PathProblem on_all_layers(PathProblem problem, const ArmClass& arm) {
+  if (!arm.srs) problem.resolution.knot = 0;
+  return problem;
+}
+
 std::optional<double> last_joint_at_rest(const Chain& chain, const ArmClass& arm,
                                          const PathProblem& problem) {
   // If the roll has a cost, turning joint 7 may be cheaper than resting it.

@@ -10,6 +10,7 @@
 #include "kinematics/srs/exact_chain_turned.hpp"
 #include "lattice/circle_turns.hpp"
 #include "lattice/given_posture.hpp"
+#include "lattice/knots.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/memory.hpp"
 #include "swivel/core/base/timeline.hpp"
@@ -34,17 +35,6 @@ std::vector<ArmPlane> planes_at(const SrsArm& arm, const std::vector<ArmPlane>& 
     found.push_back(carry_plane(arm, planes[static_cast<std::size_t>(layers[k])],
                                 turned.layer(static_cast<int>(k)).tool));
   return found;
-}
-
-/// Returns the step bounds from knot to knot: the sums of those of the path's steps, which are one
-/// for all steps or one for each.
-std::vector<Config> bounds_between_knots(const std::vector<int>& knots,
-                                         const std::vector<Config>& of_steps) {
-  std::vector<Config> bounds(knots.size() - 1, Config::Zero());
-  for (std::size_t k = 0; k < bounds.size(); ++k)
-    for (int i = knots[k]; i < knots[k + 1]; ++i)
-      bounds[k] += of_steps[of_steps.size() == 1 ? 0 : static_cast<std::size_t>(i)];
-  return bounds;
 }
 
 /// Throws InputError where a lattice with so many nodes, and so many in a layer, needs more memory
@@ -80,20 +70,9 @@ std::unique_ptr<RollLattice> RollLattice::make(const Chain& chain, const SrsArm&
 }
 
 RollLattice::Knots RollLattice::knots_along(const ToolPath& path, const Resolution& resolution) {
-  // How far the layers are, in steps from knot to knot; knots are spread evenly.
-  std::vector<double> way{0};
-  for (int i = 0; i + 1 < path.size(); ++i)
-    way.push_back(way.back() +
-                  std::max(path.layer(i).step_length / resolution.knot,
-                           path.layer(i).step_angle / (kMostTurning * resolution.dalpha)));
-  const double steps = std::max(1.0, std::ceil(way.back() - 1e-9)), step = way.back() / steps;
   Knots knots;
-  knots.layers = {0};
-  for (double goal = 1; knots.layers.back() + 1 < path.size(); ++goal) {
-    const auto last =
-        std::upper_bound(way.begin(), way.end(), goal * step + 1e-9) - way.begin() - 1;
-    if (last > knots.layers.back()) knots.layers.push_back(static_cast<int>(last));
-  }
+  knots.layers = swivel::knots_along(
+      path, {resolution.knot.value_or(kKnotOfRolls), kMostTurning * resolution.dalpha});
   knots.path = std::make_unique<const ToolPath>(path.with_layers(knots.layers));
   return knots;
 }
@@ -219,11 +198,13 @@ void RollLattice::find_near(const PathProblem& problem) {
     for (auto* all : {&lists.after, &lists.before})
       for (auto& list : *all) std::sort(list.begin(), list.end());
   }
-  if (!turns && !windows_of_roll_ && limits_.roll_slope * problem.resolution.knot < droll) {
+  const double knot =
+      std::max(problem.resolution.ds, problem.resolution.knot.value_or(kKnotOfRolls));
+  if (!turns && !windows_of_roll_ && limits_.roll_slope * knot < droll) {
     const std::string text = formatted(
         "limits.roll_slope: is less than a step of resolution.droll from knot to knot: allowed is "
         "at least %.6g rad/m",
-        droll / problem.resolution.knot);
+        droll / knot);
     throw InputError(problem.source, text);
   }
 }

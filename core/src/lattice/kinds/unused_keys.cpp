@@ -15,7 +15,7 @@ bool is_given(const UnusedKey& key, const Task& task) {
   if (key.key == "arcs") return task.resolution.arcs != resolution.arcs;
   if (key.key == "arc") return task.resolution.arc != resolution.arc;
   if (key.key == "droll") return task.resolution.droll != resolution.droll;
-  if (key.key == "knot") return task.resolution.knot != resolution.knot;
+  if (key.key == "knot") return task.resolution.knot.value_or(0) > 0;
   if (key.key == "roll_slope") return task.limits.roll_slope != limits.roll_slope;
   return false;  // limits.arm_slope and limits.step_error, which the lattice refuses
 }
@@ -32,11 +32,16 @@ std::vector<UnusedKey> unused_keys(const Chain& chain, const ArmClass& arm) {
             {"limits", "step_error", no_angle}};
   else
     keys = {{"resolution", "arc", "the arm is S-R-S, and `dphi` divides its self-motion"}};
-  if (!chain.free_roll)
-    for (const char* const key : {"droll", "knot"})
-      keys.push_back({"resolution", key, "no roll of an arm of seven joints is free"});
+  const char* const no_roll = "no roll of an arm of seven joints is free";
+  if (!chain.free_roll) keys.push_back({"resolution", "droll", no_roll});
+  if (!chain.free_roll && arm.srs) keys.push_back({"resolution", "knot", no_roll});
   if (!chain.tool_may_turn()) keys.push_back({"limits", "roll_slope", "no roll is free"});
   return keys;
+}
+
+std::vector<UnusedKey> unused_knot(const ArmClass& arm, const char* what) {
+  if (arm.srs) return {};
+  return {{"resolution", "knot", std::string(what) + " have nodes at every layer of the path"}};
 }
 
 std::vector<UnusedKey> unused_by_both(const std::vector<UnusedKey>& one,

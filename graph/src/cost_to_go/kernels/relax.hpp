@@ -26,6 +26,9 @@ struct RelaxTask {
   /// partners of each block of kBlock, and how far they lie from it at most, on the circle of a
   /// continuous joint.
   const T *block_middle[7] = {}, *block_radius[7] = {};
+  /// The least value of each block, infinite where none of its partners has one; given with the
+  /// middles.
+  const T* block_value = nullptr;
   RelaxMetric metric;
   bool wraps;  ///< any joint is continuous
 };

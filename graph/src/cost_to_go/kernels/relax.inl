@@ -230,6 +230,7 @@ void relax_run(const RelaxTask<T>& task) {
 template <bool kWraps>
 struct Reach {
   double middle[7], radius[7];
+  double spread[7];  // how far the nodes lie from the middle at most
   int last;
   /// Adds nodes for as long as they stay together, at most `most`.
   Reach(const RelaxTask<double>& task, int first, int most) : last(first + 1) {
@@ -251,7 +252,8 @@ struct Reach {
     }
     for (int j = 0; j < 7; ++j) {
       middle[j] = task.from[j][first] + (low[j] + high[j]) / 2;
-      radius[j] = task.bound[j] + (high[j] - low[j]) / 2 + kRounding;
+      spread[j] = (high[j] - low[j]) / 2 + kRounding;
+      radius[j] = task.bound[j] + spread[j];
     }
   }
   /// Returns values above 0 in lanes whose partner has a joint out of every node's reach.
@@ -263,14 +265,25 @@ struct Reach {
                radius[j]);
     });
   }
-  /// Returns values above 0 in lanes whose block of partners has a joint out of every node's reach.
-  template <class V>
-  V excess_of_blocks(const RelaxTask<double>& task, int block) const {
-    return excess_of<V>([&](int j) {
-      return V(magnitude(move_about<kWraps>(V{} + middle[j], load<V>(task.block_middle[j] + block),
-                                            task.turn[j])) -
-               (radius[j] + load<V>(task.block_radius[j] + block)));
-    });
+  /// Returns less than any node's cost through any partner of a block that is within reach, and
+  /// infinity for blocks out of every node's reach.
+  template <RelaxMetric kMetric, class V>
+  V least_through_blocks(const RelaxTask<double>& task, int block) const {
+    V sum{}, most = V{} - 1.0;
+    for (int j = 6; j >= 0; --j) {
+      const V apart = magnitude(move_about<kWraps>(
+                          V{} + middle[j], load<V>(task.block_middle[j] + block), task.turn[j])) -
+                      (spread[j] + load<V>(task.block_radius[j] + block));
+      most = larger(most, V(apart - task.bound[j]));
+      const V cost = task.scale[j] * larger(apart, V{});
+      if constexpr (kMetric == RelaxMetric::kL2)
+        sum = sum + cost * cost;
+      else
+        sum = larger(sum, cost);
+    }
+    if constexpr (kMetric == RelaxMetric::kL2) sum = root(sum);
+    const V least = sum * (1 - 1e-12) + load<V>(task.block_value + block) - 1e-11 * task.unit;
+    return most > 0.0 ? V{} + __builtin_inf() : least;
   }
   /// Returns true if every lane is above 0.
   template <class V>
@@ -347,33 +360,82 @@ inline void relax_near(const RelaxTask<double>& task, int at, int last, const in
 
 constexpr int kMostPartners = 256;  // at once
 
-/// Calls visit(first, end) for runs of partners that may be within reach, at most kMostPartners.
-template <bool kWraps, class Visit>
-inline void each_run_of_partners(const RelaxTask<double>& task, const Reach<kWraps>& reach,
-                                 const Visit& visit) {
-  using Lanes = typename Widest<double>::Lanes;
-  constexpr int kLanes = sizeof(Lanes) / sizeof(double), kBlock = RelaxTask<double>::kBlock;
-  const auto run_from = [&](int first, int length) {
-    visit(first, first + length < task.offsets ? first + length : task.offsets);
+constexpr int kMostBlocks = 1024;  // of a layer whose blocks are looked at
+
+/// Blocks of partners, each with less than any value through it.
+struct Blocks {
+  int count = 0;
+  int block[kMostBlocks];
+  double least[kMostBlocks];
+  /// Lists the blocks of partners within reach of a run of nodes. Returns the place of the one with
+  /// the least value.
+  template <RelaxMetric kMetric, bool kWraps>
+  int list(const RelaxTask<double>& task, const Reach<kWraps>& reach) {
+    using Lanes = typename Widest<double>::Lanes;
+    constexpr int kLanes = sizeof(Lanes) / sizeof(double), kBlock = RelaxTask<double>::kBlock;
+    const int blocks = (task.offsets + kBlock - 1) / kBlock;
+    count = 0;
+    int first = 0, at = 0;
+    const auto add = [&](int number, double value) {
+      if (!(value < __builtin_inf())) return;
+      block[count] = number;
+      least[count] = value;
+      if (value < least[first]) first = count;
+      ++count;
+    };
+    for (; at + kLanes <= blocks; at += kLanes) {
+      const Lanes value = reach.template least_through_blocks<kMetric, Lanes>(task, at);
+      double lane[kLanes];
+      __builtin_memcpy(lane, &value, sizeof value);
+      for (int k = 0; k < kLanes; ++k) add(at + k, lane[k]);
+    }
+    for (; at < blocks; ++at)
+      add(at, reach.template least_through_blocks<kMetric, double>(task, at));
+    return first;
+  }
+};
+
+/// Returns the largest value of the nodes first ... last - 1.
+inline double largest_value(const RelaxTask<double>& task, int first, int last) {
+  double most = task.best[first];
+  for (int k = first + 1; k < last; ++k) most = task.best[k] > most ? task.best[k] : most;
+  return most;
+}
+
+/// Relaxes the nodes at ... reach.last - 1, which are near each other, with the partners in their
+/// reach.
+template <RelaxMetric kMetric, bool kWraps>
+void relax_run_of_nodes(const RelaxTask<double>& task, int at, const Reach<kWraps>& reach,
+                        double sure) {
+  constexpr int kBlock = RelaxTask<double>::kBlock;
+  int near[2 * kMostPartners], count = 0;
+  const auto relax = [&] {
+    if (count > 0) relax_near<kMetric, kWraps>(task, at, reach.last, near, count, sure);
+    count = 0;
   };
-  if (!task.block_middle[0]) {
-    for (int first = 0; first < task.offsets; first += kMostPartners)
-      run_from(first, kMostPartners);
+  const auto add = [&](int first, int length) {
+    const int end = first + length < task.offsets ? first + length : task.offsets;
+    count = add_near(task, reach, first, end, near, count);
+    if (count >= kMostPartners) relax();
+  };
+  if (!task.block_middle[0] || task.offsets > kMostBlocks * kBlock) {
+    for (int first = 0; first < task.offsets; first += kMostPartners) add(first, kMostPartners);
+    relax();
     return;
   }
-  const int blocks = (task.offsets + kBlock - 1) / kBlock;
-  int block = 0;
-  for (; block + kLanes <= blocks; block += kLanes) {
-    const Lanes excess = reach.template excess_of_blocks<Lanes>(task, block);
-    if (reach.none_within(excess)) continue;
-    double lane[kLanes];
-    __builtin_memcpy(lane, &excess, sizeof excess);
-    for (int k = 0; k < kLanes; ++k)
-      if (!(lane[k] > 0)) run_from((block + k) * kBlock, kBlock);
+  Blocks blocks;
+  const int best = blocks.list<kMetric, kWraps>(task, reach);
+  if (blocks.count == 0) return;
+  // The most promising block comes first: its values leave out most of the others.
+  add(blocks.block[best] * kBlock, kBlock);
+  relax();
+  double most = largest_value(task, at, reach.last);
+  for (int k = 0; k < blocks.count; ++k) {
+    if (k == best || !(blocks.least[k] < most)) continue;
+    add(blocks.block[k] * kBlock, kBlock);
+    if (count == 0) most = largest_value(task, at, reach.last);
   }
-  for (; block < blocks; ++block)
-    if (!(reach.template excess_of_blocks<double>(task, block) > 0))
-      run_from(block * kBlock, kBlock);
+  relax();
 }
 
 /// Relaxes runs of nodes near each other with the partners in their reach.
@@ -381,17 +443,9 @@ template <RelaxMetric kMetric, bool kWraps>
 void relax_all_run(const RelaxTask<double>& task) {
   constexpr int kMost = 8;
   const double sure = sure_measure<kMetric>(task);
-  int near[2 * kMostPartners];
   for (int at = 0; at < task.n;) {
     const Reach<kWraps> reach(task, at, task.n - at < kMost ? task.n - at : kMost);
-    int count = 0;
-    each_run_of_partners(task, reach, [&](int first, int end) {
-      count = add_near(task, reach, first, end, near, count);
-      if (count < kMostPartners) return;
-      relax_near<kMetric, kWraps>(task, at, reach.last, near, count, sure);
-      count = 0;
-    });
-    if (count > 0) relax_near<kMetric, kWraps>(task, at, reach.last, near, count, sure);
+    relax_run_of_nodes<kMetric, kWraps>(task, at, reach, sure);
     at = reach.last;
   }
 }

@@ -10,23 +10,32 @@
 namespace swivel {
 
 ExplicitCostToGo::ExplicitCostToGo(const Lattice& lattice, Pruning pruning, const Budget& budget)
-    : LayerValues(lattice, budget, pruning), lattice_(&lattice) {
-  const auto layers = static_cast<std::size_t>(lattice.layers());
-  joints_.resize(layers);
-  std::vector<Lattice::Node> nodes;
-  for (int layer = 0; layer < lattice.layers(); ++layer) {
-    budget_.poll();
-    lattice.layer_nodes(layer, nodes);
-    const auto count = static_cast<std::size_t>(lattice.slots(layer));
-    for (std::size_t k = 0; k < kDof; ++k) {
-      Values& joint = joints_[static_cast<std::size_t>(layer)][k];
-      joint.resize(count);
-      for (const Lattice::Node& node : nodes)
-        joint[static_cast<std::size_t>(node.slot)] = node.q[static_cast<Eigen::Index>(k)];
-    }
-    blocks_.push_back(blocks_of(joints_[static_cast<std::size_t>(layer)]));
-    ik_nodes_ += static_cast<std::int64_t>(count);
+    : LayerValues(lattice, budget, pruning),
+      lattice_(&lattice),
+      nodes_(static_cast<std::size_t>(lattice.layers())) {
+  for (int layer = 0; layer < lattice.layers(); ++layer) ik_nodes_ += lattice.slots(layer);
+}
+
+const ExplicitCostToGo::Nodes& ExplicitCostToGo::nodes_of(int layer) {
+  std::shared_ptr<const Nodes>& known = nodes_[static_cast<std::size_t>(layer)];
+  if (known) return *known;
+  auto nodes = std::make_shared<Nodes>();
+  lattice_->layer_nodes(layer, listed_);
+  for (std::size_t k = 0; k < kDof; ++k) {
+    Values& joint = nodes->joints[k];
+    joint.resize(static_cast<std::size_t>(lattice_->slots(layer)));
+    for (const Lattice::Node& node : listed_)
+      joint[static_cast<std::size_t>(node.slot)] = node.q[static_cast<Eigen::Index>(k)];
   }
+  nodes->blocks = blocks_of(nodes->joints);
+  known = std::move(nodes);
+  return *known;
+}
+
+void ExplicitCostToGo::share_nodes(LayerValues& coarser, std::span<const int> layer_here) {
+  const auto& others = static_cast<ExplicitCostToGo&>(coarser).nodes_;
+  for (std::size_t layer = 0; layer < layer_here.size(); ++layer)
+    nodes_[static_cast<std::size_t>(layer_here[layer])] = others[layer];
 }
 
 ExplicitCostToGo::Blocks ExplicitCostToGo::blocks_of(const Joints& joints) const {
@@ -49,17 +58,6 @@ ExplicitCostToGo::Blocks ExplicitCostToGo::blocks_of(const Joints& joints) const
   return blocks;
 }
 
-void ExplicitCostToGo::leave_out_unreachable(const Values& others, const Values& radius) {
-  constexpr std::size_t kBlock = RelaxTask<double>::kBlock;
-  radius_ = radius;
-  for (std::size_t block = 0; block < radius.size(); ++block) {
-    const auto first = others.begin() + static_cast<std::ptrdiff_t>(block * kBlock),
-               end = others.begin() +
-                     static_cast<std::ptrdiff_t>(std::min(others.size(), (block + 1) * kBlock));
-    if (*std::min_element(first, end) == kUnreachable) radius_[block] = -kUnreachable;
-  }
-}
-
 void ExplicitCostToGo::relax_between(int step, const Joints& from, const Joints& to,
                                      const Blocks* blocks, const Values& others, Values& out) {
   const std::size_t count = from[0].size(), partners = others.size();
@@ -74,8 +72,13 @@ void ExplicitCostToGo::relax_between(int step, const Joints& from, const Joints&
     task.block_radius[k] = blocks ? blocks->radius[k].data() : nullptr;
   }
   if (blocks) {
-    leave_out_unreachable(others, blocks->radius[kDof - 1]);
-    task.block_radius[kDof - 1] = radius_.data();
+    constexpr std::size_t kBlock = RelaxTask<double>::kBlock;
+    least_of_blocks_.clear();
+    for (std::size_t first = 0; first < partners; first += kBlock)
+      least_of_blocks_.push_back(*std::min_element(
+          others.begin() + static_cast<std::ptrdiff_t>(first),
+          others.begin() + static_cast<std::ptrdiff_t>(std::min(partners, first + kBlock))));
+    task.block_value = least_of_blocks_.data();
   }
   task.value = others.data();
   task.best = out.data();
@@ -85,25 +88,26 @@ void ExplicitCostToGo::relax_between(int step, const Joints& from, const Joints&
 
 void ExplicitCostToGo::relax(int step, int layer, int other_layer, const Values& others,
                              Values& out) {
-  const Joints& from = joints_[static_cast<std::size_t>(layer)];
-  const auto other = static_cast<std::size_t>(other_layer);
+  const Joints& from = joints_of(layer);
+  const Nodes& to = nodes_of(other_layer);
   out.assign(from[0].size(), kUnreachable);
-  relax_between(step, from, joints_[other], &blocks_[other], others, out);
+  relax_between(step, from, to.joints, &to.blocks, others, out);
 }
 
-void ExplicitCostToGo::gather(int layer, const std::vector<int>& slots, Joints& out) const {
+void ExplicitCostToGo::gather(int layer, const std::vector<int>& slots, Joints& out) {
+  const Joints& joints = joints_of(layer);
   for (std::size_t k = 0; k < kDof; ++k) {
     out[k].clear();
-    for (const int slot : slots)
-      out[k].push_back(joints_[static_cast<std::size_t>(layer)][k][static_cast<std::size_t>(slot)]);
+    for (const int slot : slots) out[k].push_back(joints[k][static_cast<std::size_t>(slot)]);
   }
 }
 
 void ExplicitCostToGo::relax_some(int layer, const std::vector<int>& slots, Values& out) {
-  const auto next = static_cast<std::size_t>(layer) + 1;
+  const Nodes& next = nodes_of(layer + 1);
   gather(layer, slots, some_);
   out.assign(slots.size(), kUnreachable);
-  relax_between(layer, some_, joints_[next], &blocks_[next], value_[next], out);
+  relax_between(layer, some_, next.joints, &next.blocks,
+                value_[static_cast<std::size_t>(layer) + 1], out);
   for (std::size_t k = 0; k < slots.size(); ++k)
     if (lost_best_edge(layer, slots[k], out[k])) out[k] = relax_one(layer, slots[k]);
 }
@@ -177,24 +181,23 @@ void ExplicitCostToGo::find_stale(int layer, const std::vector<Change>& ahead,
   const auto slot = [&](std::size_t k) { return all ? k : static_cast<std::size_t>(slots_[k]); };
   for (std::size_t k = 0; k < least_.size(); ++k) least_[k] += little - (own ? own[slot(k)] : 0.0);
   raised_ = least_;
-  relax_between(layer, all ? joints_[static_cast<std::size_t>(layer)] : reached_, some_, nullptr,
-                changed_from_, least_);
+  relax_between(layer, all ? joints_of(layer) : reached_, some_, nullptr, changed_from_, least_);
   for (std::size_t k = 0; k < least_.size(); ++k)
     if (least_[k] < raised_[k]) stale.push_back(static_cast<int>(slot(k)));
 }
 
 Config ExplicitCostToGo::config(int layer, int slot) {
+  const Joints& joints = joints_of(layer);
   Config q;
   for (std::size_t k = 0; k < kDof; ++k)
-    q[static_cast<Eigen::Index>(k)] =
-        joints_[static_cast<std::size_t>(layer)][k][static_cast<std::size_t>(slot)];
+    q[static_cast<Eigen::Index>(k)] = joints[k][static_cast<std::size_t>(slot)];
   return q;
 }
 
 void ExplicitCostToGo::steps(int layer, int slot, double bound, std::vector<Step>& out) {
   const Config q = config(layer, slot);
   const double own = verdicts_.cost(layer, slot);
-  const Joints& next = joints_[static_cast<std::size_t>(layer) + 1];
+  const Joints& next = joints_of(layer + 1);
   const Config& most = lattice_->step_bound(layer);
   // most nodes are too far off in one joint
   const auto too_far = [&](std::size_t b) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <array>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "cost_to_go/kinds/layer_values.hpp"
@@ -34,28 +36,35 @@ class ExplicitCostToGo final : public LayerValues {
   [[nodiscard]] std::size_t many(int layer) const override;
   void relax_some(int layer, const std::vector<int>& slots, Values& out) override;
   /// Replaces `out` by the joints of some nodes of a layer.
-  void gather(int layer, const std::vector<int>& slots, Joints& out) const;
+  void gather(int layer, const std::vector<int>& slots, Joints& out);
   /// Where the nodes of a layer lie, by blocks: RelaxTask::block_middle and block_radius.
   struct Blocks {
     Joints middle, radius;
   };
   [[nodiscard]] Blocks blocks_of(const Joints& joints) const;
-  /// Replaces radius_ by the radius of blocks of one joint, out of all reach where no node of the
-  /// block has a value.
-  void leave_out_unreachable(const Values& others, const Values& radius);
   /// Lowers `out`, for nodes with joints `from` of the layer before `step`, to the least of edge
   /// cost plus value over nodes with joints `to`, whose values are `others`, and which lie in
   /// `blocks`, if given.
   void relax_between(int step, const Joints& from, const Joints& to, const Blocks* blocks,
                      const Values& others, Values& out);
 
+  /// What the kernels read of the nodes of a layer.
+  struct Nodes {
+    Joints joints;
+    Blocks blocks;
+  };
+  /// Returns those of a layer. They are gathered when they are first asked for.
+  [[nodiscard]] const Nodes& nodes_of(int layer);
+  [[nodiscard]] const Joints& joints_of(int layer) { return nodes_of(layer).joints; }
+  void share_nodes(LayerValues& coarser, std::span<const int> layer_here) override;
+
   const Lattice* lattice_;
-  std::vector<Joints> joints_;  // [layer][joint][slot]
-  std::vector<Blocks> blocks_;  // [layer]
+  std::vector<std::shared_ptr<const Nodes>> nodes_;  // [layer], null where none was asked for
   // What a repair works with, kept for the next one.
   Joints some_, reached_;
-  Values changed_from_, least_, raised_, radius_;
+  Values changed_from_, least_, raised_, least_of_blocks_;
   std::vector<int> slots_;
+  std::vector<Lattice::Node> listed_;
 };
 
 }  // namespace swivel

@@ -61,7 +61,7 @@ void LayerValues::solve_layer(int layer, Values& out) {
 
 void LayerValues::solve_within_limit(int layer, Values& out) {
   if (limit_ == kUnreachable) return solve_layer(layer, out);
-  const Values& before = before_.values[static_cast<std::size_t>(layer)];
+  const Values& before = (by_coarser_ ? forward_ : before_.values)[static_cast<std::size_t>(layer)];
   const double* own = verdicts_.costs(layer);
   within_.clear();
   for (int slot = 0; slot < static_cast<int>(before.size()); ++slot)
@@ -92,6 +92,58 @@ bool LayerValues::set_limit() {
   return true;
 }
 
+const std::vector<LayerValues::Values>& LayerValues::forward_bounds() {
+  if (!forward_.empty()) return forward_;
+  const TraceSpan span("forward bounds");
+  for (int layer = 0; layer < lattice().layers(); ++layer) {
+    budget_.poll();
+    Values here;
+    if (layer == 0)
+      begin(layer, here);
+    else
+      relax(layer - 1, layer, layer - 1, forward_.back(), here);
+    leave_out_removed(layer, here);
+    forward_.push_back(std::move(here));
+  }
+  return forward_;
+}
+
+void LayerValues::bound_by_coarser(CostToGo& coarser, std::span<const int> layer_here) {
+  auto* const other = dynamic_cast<LayerValues*>(&coarser);
+  if (!other) return;
+  share_nodes(*other, layer_here);
+  if (lattice().has_node_costs() || lattice().is_closed()) return;
+  const std::vector<Values>& known = other->forward_bounds();
+  forward_.clear();
+  std::size_t next = 0;
+  for (int layer = 0; layer < lattice().layers(); ++layer) {
+    budget_.poll();
+    Values here;
+    if (next < layer_here.size() && layer_here[next] == layer)
+      here = known[next++];
+    else
+      relax(layer - 1, layer, layer - 1, forward_.back(), here);
+    leave_out_removed(layer, here);
+    forward_.push_back(std::move(here));
+  }
+  by_coarser_ = true;
+  bounded_ = false;
+  expected_ = other->goal_layer() + 1 == other->lattice().layers() ? other->best() : 0;
+  if (expected_ == kUnreachable) expected_ = 0;
+}
+
+bool LayerValues::set_limit_by_bounds() {
+  constexpr double kWide = 0.3;
+  const Values& ends = forward_[static_cast<std::size_t>(goal_)];
+  double best = ends.empty() ? kUnreachable : *std::min_element(ends.begin(), ends.end());
+  if (best == kUnreachable) return false;
+  if (goal_ + 1 == lattice().layers()) best = std::max(best, expected_);
+  limit_ =
+      slack_ < kWide ? lattice().largest_of_same_coarse_cost((1 + slack_) * best) : kUnreachable;
+  slack_ *= 4;
+  return true;
+}
+
 void LayerValues::sweep_once() {
   const TraceSpan span("sweep");
   for (int layer = goal_; layer >= 0; --layer) {
@@ -108,12 +160,17 @@ void LayerValues::compute(int goal_layer) {
     if (before_.removed != 0 || verdicts_.removed() != 0) before_ = {};
     slack_ = first_slack(lattice());
   }
-  const bool reached = !bounded_ || set_limit();
+  if (by_coarser_)
+    slack_ = kSlackOfHalves;
+  else
+    forward_.clear();
+  const bool reached = by_coarser_ ? set_limit_by_bounds() : !bounded_ || set_limit();
   for (int layer = reached ? goal_layer + 1 : 0; layer < lattice().layers(); ++layer) {
     Values& values = value_[static_cast<std::size_t>(layer)];
     std::fill(values.begin(), values.end(), kUnreachable);
   }
   if (reached) sweep_once();
+  while (by_coarser_ && beyond_limit() && set_limit_by_bounds()) sweep_once();
 }
 
 void LayerValues::renew_layer(int layer, std::vector<Change>& changed) {
@@ -177,8 +234,8 @@ void LayerValues::compute_removals() {
     ahead.swap(changed);
   }
   // Beyond the limit values may be too high.
-  while (limit_ != kUnreachable && !(lattice().largest_of_same_coarse_cost(best()) <= limit_)) {
-    if (set_limit()) {
+  while (beyond_limit()) {
+    if (by_coarser_ ? set_limit_by_bounds() : set_limit()) {
       sweep_once();
       continue;
     }

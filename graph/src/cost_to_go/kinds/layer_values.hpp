@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <cstddef>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -16,7 +17,8 @@ namespace swivel {
 ///
 /// With Pruning::kByBound and a given start, it first goes forward from there, and leaves out nodes
 /// that lie on no path of cost `limit` or less. Should removals make the best path cost more, the
-/// limit is raised, and the sweep repeated.
+/// limit is raised, and the sweep repeated. Where a lattice was made by halving steps of another
+/// one, forward values of that one take the place of the way forward (bound_by_coarser()).
 class LayerValues : public CostToGo {
  public:
   [[nodiscard]] double at(int layer, int slot) const override {
@@ -24,6 +26,7 @@ class LayerValues : public CostToGo {
   }
   [[nodiscard]] double best() const override;
   [[nodiscard]] int deepest_reachable() override;
+  void bound_by_coarser(CostToGo& coarser, std::span<const int> layer_here) final;
 
  protected:
   using Values = std::vector<double>;  // [slot]
@@ -55,6 +58,10 @@ class LayerValues : public CostToGo {
   /// Returns the number of nodes, stale or changed in the next layer, beyond which a layer is
   /// solved as a whole in less time than node by node.
   [[nodiscard]] virtual std::size_t many(int layer) const = 0;
+  /// Takes what is kept of the nodes of layers that a coarser cost-to-go of the same class has too.
+  virtual void share_nodes(LayerValues& coarser, std::span<const int> layer_here) {
+    static_cast<void>(coarser), static_cast<void>(layer_here);
+  }
   /// Says that what has been solved of a layer is not wanted again soon.
   virtual void done_with(int layer) { static_cast<void>(layer); }
 
@@ -79,7 +86,18 @@ class LayerValues : public CostToGo {
   /// Sets the limit to somewhat more than the best path to the goal costs. Returns false where no
   /// path leads there.
   bool set_limit();
+  /// Sets the limit from the lower bounds of a coarser lattice: to `slack_` more than the best path
+  /// is likely to cost, or to infinity where that slack is wide. Returns false where no path leads
+  /// to the goal.
+  bool set_limit_by_bounds();
+  /// Returns for each node less than any path from layer 0 costs, over what is not removed but for
+  /// edges; computes it for what the coarser lattice's bounds do not say.
+  [[nodiscard]] const std::vector<Values>& forward_bounds();
   void sweep_once();
+  /// Returns whether the best path costs so much that values may be too high for it.
+  [[nodiscard]] bool beyond_limit() const {
+    return limit_ != kUnreachable && !(lattice().largest_of_same_coarse_cost(best()) <= limit_);
+  }
   /// Solves a layer as a whole. Appends the nodes whose values change to `changed`.
   void renew_layer(int layer, std::vector<Change>& changed);
   /// Computes the values of the nodes `stale` of a layer again. Appends those whose values change
@@ -89,6 +107,7 @@ class LayerValues : public CostToGo {
   void restore() final {
     std::tie(goal_, limit_, value_, before_) = saved_;
     slack_ = first_slack(lattice());
+    forward_.clear();
   }
   void leave_out_removed(int layer, Values& values) const;
 
@@ -104,6 +123,10 @@ class LayerValues : public CostToGo {
     std::vector<Values> values;  // [layer][slot]
   };
   Before before_;
+  /// forward_bounds(), if they are known; by bound_by_coarser() the limit is theirs.
+  std::vector<Values> forward_;
+  bool by_coarser_ = false;
+  double expected_ = 0;      // what the best path to the last layer is likely to cost, at least
   std::vector<int> within_;  // slots, scratch
   Values fresh_;             // what renew_nodes() computes
 

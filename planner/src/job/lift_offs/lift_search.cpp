@@ -57,7 +57,7 @@ LiftSearch::LiftSearch(const PreparedRobot& robot, const Problem& job, std::size
       proofs_(proofs),
       hooks_{std::move(check), nullptr},
       budget_(budget),
-      problem_(bare_problem(job, stroke)),
+      problem_(on_all_layers(bare_problem(job, stroke), robot.arm_class())),
       world_(robot.world(), problem_, budget),
       executor_(threads),
       path_(problem_path(problem_, robot.arm().chain, budget)) {
@@ -156,8 +156,9 @@ std::vector<double> LiftSearch::line_costs(int layer, const Vector3d& offset) {
     path.end_at(end);
   }
   path.begin_at(s, path_.layer(layer).tool, 0, line.source);
-  const auto lattice = with_all_windings(
-      make_lattice(robot_->arm().chain, robot_->arm_class(), path, line, budget_));
+  const auto lattice =
+      with_all_windings(make_lattice(robot_->arm().chain, robot_->arm_class(), path,
+                                     on_all_layers(line, robot_->arm_class()), budget_));
   CollisionValidity validity(*lattice, world_, world_.edge_rule(robot_->radii()), line.limits.edges,
                              proofs_, executor_, 0, budget_);
   HookedValidity hooked(*lattice, validity, hooks_, budget_);

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,9 @@ struct InfeasibilityCertificate {
   /// For lattices where bounded joints of more than a turn count as circles: the joints told apart
   /// (Lattice::joints_with_windings()).
   std::vector<std::array<bool, kDof>> windings;
+  /// For lattices whose layers are knots: the steps that were halved, one call of
+  /// Lattice::with_knots() after the other.
+  std::vector<std::set<int>> halvings;
   int layers = 0;  ///< layers of the whole lattice
   int first_layer = 0;
   std::vector<Layer> band;  ///< layers from `first_layer` on

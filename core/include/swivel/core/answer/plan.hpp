@@ -70,6 +70,19 @@ struct LatticeInfo {
   /// found".
   bool complete = true;
   int merged_waypoints = 0;
+  /// What the search says of the knots of a lattice that has layers between them, and may have more
+  /// knots (docs/model.md "Knots").
+  struct Knots {
+    /// What no path through nodes of the knots searched costs less than, whatever more knots there
+    /// were besides; none where there is no path of valid nodes.
+    std::optional<double> bound;
+    /// By how much of `bound` the answer may be dearer than the best of those paths; none where
+    /// there is no answer.
+    std::optional<double> gap;
+    /// False: time ended before steps that are worth it were halved.
+    bool halved = true;
+  };
+  std::optional<Knots> knots;
   /// Cost that the search minimised and by which ties are settled, of solved problems: that of the
   /// nodes, not of the rows.
   double cost = 0;

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "swivel/core/lattice/lattice.hpp"
@@ -32,10 +35,10 @@ class ExplicitLattice : public Lattice {
                   const std::array<bool, kDof>& circles = {});
 
   [[nodiscard]] const Point& point(int layer, int slot) const {
-    return points_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)];
+    return (*points_[static_cast<std::size_t>(layer)])[static_cast<std::size_t>(slot)];
   }
   [[nodiscard]] int slots(int layer) const override {
-    return static_cast<int>(points_[static_cast<std::size_t>(layer)].size());
+    return static_cast<int>(points_[static_cast<std::size_t>(layer)]->size());
   }
   [[nodiscard]] std::int64_t nodes() const override { return nodes_; }
   [[nodiscard]] std::optional<Config> node(int layer, int slot) const override {
@@ -68,10 +71,18 @@ class ExplicitLattice : public Lattice {
     out.assign(1, {0, slots(layer + 1)});
   }
 
+ protected:
+  /// The nodes of each layer; lattices share those of layers that are alike.
+  using Layers = std::vector<std::shared_ptr<const std::vector<Point>>>;
+  ExplicitLattice(const Chain& chain, const ToolPath& path, const PathProblem& problem,
+                  Layers layers, const std::array<bool, kDof>& circles);
+  [[nodiscard]] static Layers shared(std::vector<std::vector<Point>> layers);
+  [[nodiscard]] const Layers& all_points() const { return points_; }
+
  private:
   [[nodiscard]] bool step_error_allowed(int, int, int) const override { return true; }
 
-  std::vector<std::vector<Point>> points_;
+  Layers points_;
   std::int64_t nodes_ = 0;
 };
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "swivel/core/base/budget.hpp"
@@ -102,6 +103,22 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
   [[nodiscard]] virtual const ToolPath& path_of_rows() const { return *path_; }
   /// Returns the layer of path_of_rows() at which `layer` of the lattice is.
   [[nodiscard]] virtual int layer_of_rows(int layer) const { return layer; }
+  /// Returns whether a step has layers between that may have nodes in a lattice by with_knots().
+  [[nodiscard]] virtual bool can_halve(int step) const {
+    static_cast<void>(step);
+    return false;
+  }
+  /// Returns a lattice that has a layer more in the middle of each of some steps, given by the
+  /// layers at which they begin; those without layers between are left out. The nodes of all other
+  /// layers stay what they are. Returns null if all are left out, or if the lattice cannot have
+  /// more layers. Throws Stopped.
+  [[nodiscard]] virtual std::unique_ptr<Lattice> with_knots(const std::set<int>& steps,
+                                                            const Budget& budget) const {
+    static_cast<void>(steps), static_cast<void>(budget);
+    return nullptr;
+  }
+  /// Returns the steps of each with_knots() call that led to this lattice, the first one first.
+  [[nodiscard]] virtual std::vector<std::set<int>> halvings() const { return {}; }
   /// How far a move turns the tool about its own z axis, compared with what limits.roll_slope
   /// allows for the distance that the tool travels meanwhile.
   struct RollStep {

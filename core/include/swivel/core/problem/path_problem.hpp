@@ -132,6 +132,10 @@ struct Limits {
   bool operator==(const Limits&) const = default;
 };
 
+/// What Resolution::knot is unless it is set, m: of arms without an arm angle, and of S-R-S arms
+/// whose roll is free.
+inline constexpr double kKnotOfArcs = 0, kKnotOfRolls = 0.025;
+
 /// How fine the lattice is.
 struct Resolution {
   double ds = 0.005;    ///< largest distance between layers, m
@@ -141,9 +145,9 @@ struct Resolution {
   /// For S-R-S arms: adds nodes on the arcs of allowed arm angles that lie between grid angles.
   bool arcs = false;
   double droll = 0.1;  ///< largest step of the roll of seven-joint arms, rad
-  /// Length of path between the layers at which roll and arm angle of seven-joint arms are chosen
-  /// together, m.
-  double knot = 0.025;
+  /// Length of path between the layers that have nodes, m: of arms without an arm angle, and of
+  /// S-R-S arms whose roll is free. 0: every layer has; unset: kKnotOfArcs, kKnotOfRolls.
+  std::optional<double> knot;
   bool operator==(const Resolution&) const = default;
 };
 

@@ -4,6 +4,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "swivel/core/lattice/lattice.hpp"
@@ -45,6 +46,12 @@ class CostToGo {
   /// Takes the lower bounds of a swept cost-to-go whose lattice this one was made from by telling
   /// turns apart (Lattice::with_windings()).
   virtual void bound_by(const CostToGo& circles) { static_cast<void>(circles); }
+  /// Takes lower bounds from the cost-to-go of a lattice from which this one's was made by halving
+  /// steps (Lattice::with_knots()), after Verdicts::take(): layer k there is layer `layer_here[k]`
+  /// here. Nodes must cost nothing.
+  virtual void bound_by_coarser(CostToGo& coarser, std::span<const int> layer_here) {
+    static_cast<void>(coarser), static_cast<void>(layer_here);
+  }
   /// Computes the cost-to-go with every node of `goal_layer` as a goal. Verdicts are kept.
   void sweep(int goal_layer);
   /// Returns the layer whose nodes are the goals.

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <deque>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -60,6 +61,23 @@ struct SearchOutcome {
   double cost = 0;
 };
 
+/// What a search says of the steps from knot to knot of a lattice that can halve them
+/// (Lattice::can_halve()); the other steps are *short*. Let p_0 be the first path of valid nodes
+/// and valid short edges, in the order of answers, and p_j the first one without the invalid edges
+/// of p_0 ... p_(j-1), up to the answer. All of this depends on the lattice and on what is valid
+/// alone, not on the order of questions.
+struct KnotSearch {
+  /// The search ends without an answer after `patience` p_j in a row at which no new step turns out
+  /// to be narrow, once one is, and before a p_j that costs `most` or more.
+  int patience = 8, idle = 0;
+  double most = kUnreachable;
+  /// The least cost of a path of valid nodes and valid short edges, p_0's but for ties;
+  /// kUnreachable: there is none. No valid path through the knots' nodes costs less.
+  double bound = kUnreachable;
+  /// The steps at which a p_j has an invalid edge that is not short, by layer of their beginning.
+  std::set<int> narrow;
+};
+
 /// How path_first() searches. Changes the work, never the answer.
 struct PathFirstOptions {
   /// Questions asked at once; answers, not their timing, decide what follows. search_lazily()
@@ -75,6 +93,9 @@ struct PathFirstOptions {
   /// True: neighbours are asked about on other threads while the caller takes the answers about
   /// those before them.
   bool overlap_region_questions = false;
+  /// Where to note what the search says of steps between knots; null: nowhere. Only edges of the
+  /// p_j are asked about then, all of each p_j.
+  KnotSearch* knots = nullptr;
 };
 
 /// The work of a search.
@@ -116,7 +137,8 @@ void check_failure_hints(CostToGo& cost_to_go, Validity& validity,
 /// Returns the deepest layer that a valid path from layer 0 reaches, once path_first() has found
 /// none; -1 when layer 0 has no valid node. The cost-to-go then has that layer as its goal, and
 /// `counters` the best valid path there, in the order of answers, as its candidate: whatever was
-/// asked before. Throws Stopped.
+/// asked before. With PathFirstOptions::knots, it ends where steps on the way turn out to be
+/// narrow, and what it returns means nothing. Throws Stopped.
 [[nodiscard]] int deepest_valid_layer(CostToGo& cost_to_go, Validity& validity,
                                       const PathFirstOptions& options, SearchCounters& counters);
 

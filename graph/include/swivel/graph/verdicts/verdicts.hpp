@@ -48,6 +48,11 @@ class Verdicts {
   /// Removes an edge with its cost.
   void remove_edge(int layer, int a, int b, double cost);
 
+  /// Takes what `others` say of another lattice whose layers are also layers of this one, with the
+  /// same slots and joints: layer k there is layer `layer_here[k]` here. Of edges those are taken
+  /// whose layers are neighbours here too. CostToGo::sweep() must follow.
+  void take(const Verdicts& others, std::span<const int> layer_here);
+
   /// Returns the number of nodes and edges removed so far.
   [[nodiscard]] std::int64_t removed() const { return removed_; }
 

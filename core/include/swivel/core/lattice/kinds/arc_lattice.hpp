@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "swivel/core/base/budget.hpp"
@@ -35,6 +36,12 @@ struct CircleTurns;
 /// geometry, weights and limits of the joints alone; obstacles never change them. A given start or
 /// end takes the place of its layer's nodes. A bounded joint with a range of more than a turn is
 /// treated as a circle, and path_joints() finds its values.
+///
+/// With `resolution.knot` only every few layers of the tool's path, the *knots*, have nodes.
+/// Between two of them the joints follow the chord from node to node, evenly over the travel, each
+/// layer's moved onto its tool pose by Newton steps of least weighted norm; what nodes and moves
+/// must keep holds at all of these layers (Lattice::has_layers_between). So a path may drift along
+/// the self-motion by less from layer to layer than nodes lie apart.
 class ArcLattice final : public ExplicitLattice {
  public:
   /// Builds the nodes of every layer. `chain` and `path` must outlive the lattice. If `method` has
@@ -53,9 +60,18 @@ class ArcLattice final : public ExplicitLattice {
   [[nodiscard]] int next_on_arc(int layer, int slot) const override;
   [[nodiscard]] LatticeInfo describe() const override;
   /// Returns the number of arcs of all layers together.
-  [[nodiscard]] std::int64_t arcs() const { return layers_.arcs; }
+  [[nodiscard]] std::int64_t arcs() const { return data_.arcs; }
   /// Returns which joints are treated as circles although they are bounded.
-  [[nodiscard]] const std::array<bool, kDof>& circles() const { return layers_.circles; }
+  [[nodiscard]] const std::array<bool, kDof>& circles() const { return data_.circles; }
+
+  [[nodiscard]] bool has_layers_between() const override { return !data_.knots.empty(); }
+  [[nodiscard]] const ToolPath& path_of_rows() const override { return *data_.whole; }
+  [[nodiscard]] int layer_of_rows(int layer) const override {
+    return has_layers_between() ? data_.knots[static_cast<std::size_t>(layer)] : layer;
+  }
+  [[nodiscard]] InterpolatedEdge interpolate_edge(int layer, int a, const Config& qa, int b,
+                                                  const Config& qb) const override;
+  [[nodiscard]] std::vector<TrajectoryRow> path_rows(const std::vector<int>& slots) const override;
 
   /// Returns the rows of a path, with each circle turned as a whole so that all rows are inside its
   /// limits and the first one is as near to the middle of its range as possible, the lower of two
@@ -64,25 +80,30 @@ class ArcLattice final : public ExplicitLattice {
   [[nodiscard]] std::vector<Config> path_joints(const std::vector<int>& slots) const override;
   [[nodiscard]] Joints off_limits(const std::vector<int>& slots) const override;
   [[nodiscard]] std::unique_ptr<Lattice> with_windings(const Joints& joints) const override;
-  [[nodiscard]] std::vector<Joints> joints_with_windings() const override {
-    return layers_.windings;
+  [[nodiscard]] bool can_halve(int step) const override {
+    return layer_of_rows(step + 1) - layer_of_rows(step) > 1;
   }
+  /// Inserted knots have the images of the nodes of the knot before, and what fills the gaps. The
+  /// nodes of other knots stay.
+  [[nodiscard]] std::unique_ptr<Lattice> with_knots(const std::set<int>& steps,
+                                                    const Budget& budget) const override;
+  [[nodiscard]] std::vector<std::set<int>> halvings() const override { return data_.halvings; }
+  [[nodiscard]] std::vector<Joints> joints_with_windings() const override { return data_.windings; }
   [[nodiscard]] int slot_on_circles(int layer, int slot) const override {
-    return layers_.on_circles.empty()
+    return data_.on_circles.empty()
                ? slot
-               : layers_
-                     .on_circles[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)];
+               : data_.on_circles[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)];
   }
   /// Images of a node in other turns place all bodies alike.
   [[nodiscard]] bool shares_body_poses(unsigned groups) const override {
-    return !layers_.on_circles.empty() || ExplicitLattice::shares_body_poses(groups);
+    return !data_.on_circles.empty() || ExplicitLattice::shares_body_poses(groups);
   }
   void slots_with_same_body_poses(int layer, int slot, unsigned groups,
                                   std::vector<int>& out) const override;
 
  private:
-  struct Layers {
-    std::vector<std::vector<Point>> points;
+  struct Data {
+    Layers points;
     std::array<bool, kDof> circles{};
     std::vector<std::array<bool, kDof>> windings{};
     // next_on_arc() of a lattice by with_windings(), by layer and slot
@@ -90,17 +111,30 @@ class ArcLattice final : public ExplicitLattice {
     // slot_on_circles() of a lattice by with_windings(), by layer and slot
     std::vector<std::vector<int>> on_circles{};
     std::int64_t arcs = 0;
+    std::shared_ptr<const SelfMotion> motion{};
+    // The path whose layers have rows; its layers that have nodes, none where all have; and the
+    // path of these.
+    const ToolPath* whole = nullptr;
+    std::vector<int> knots{};
+    std::shared_ptr<const ToolPath> path_of_knots{};
+    // The points before any with_windings() call, of a lattice by it that has layers between.
+    Layers unwound{};
+    std::vector<std::set<int>> halvings{};
+    void set_knots(std::vector<int> layers);
+    [[nodiscard]] const ToolPath& path() const { return path_of_knots ? *path_of_knots : *whole; }
   };
-  static Layers build(const Chain& chain, const LockMethod& method, const ToolPath& path,
-                      const PathProblem& problem, const Budget& budget);
-  ArcLattice(const Chain& chain, const LockMethod& method, const ToolPath& path,
-             const PathProblem& problem, Layers&& layers);
+  static Data build(const Chain& chain, const LockMethod& method, const ToolPath& path,
+                    const PathProblem& problem, const Budget& budget);
+  ArcLattice(const Chain& chain, const LockMethod& method, const PathProblem& problem, Data&& data);
 
   /// Returns the rows of a path, unwrapped without jumps from the first one, in the turn of the
   /// given start if there is one, else in that of the given end if they lead there.
   [[nodiscard]] std::vector<Config> followed(const std::vector<int>& slots) const;
   /// Returns the posture that the problem gives for a layer; nothing if it gives none.
   [[nodiscard]] std::optional<Config> given(int layer) const;
+  /// Returns whether joints `to` keep their limits at layer `i` of the path of rows, and the move
+  /// there from `from` what steps of that path must keep; else writes the fault.
+  bool keeps_row(int i, const Config& from, const Config& to, InterpolatedEdge& fault) const;
   /// Returns how rows of followed() fit into the limits of the circles.
   [[nodiscard]] CircleTurns turns_along(const std::vector<Config>& rows) const;
   /// A node in one turn of each joint that is told apart, and a number that orders these turns.
@@ -114,7 +148,9 @@ class ArcLattice final : public ExplicitLattice {
 
   LockMethod method_;
   PathProblem problem_;  // for with_windings
-  Layers layers_;        // without the points, which the base class keeps
+  Data data_;            // without the points, which the base class keeps
+  // Step bounds of the path of rows, by step; one entry if all are alike.
+  std::vector<Config> steps_of_rows_;
 };
 
 }  // namespace swivel

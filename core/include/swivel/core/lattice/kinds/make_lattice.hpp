@@ -21,6 +21,10 @@ struct ArmClass;
                                                     const PathProblem& problem,
                                                     const Budget& budget = {});
 
+/// Returns a problem whose lattice has nodes at every layer, of an arm without an arm angle: one of
+/// a stroke or of an arm of two, whose search cannot halve steps between knots.
+[[nodiscard]] PathProblem on_all_layers(PathProblem problem, const ArmClass& arm);
+
 /// Returns where joint 7 may rest, rad, if the tool of an S-R-S arm may turn freely about the axis
 /// of that joint: as far from its limits as possible. The other six joints alone then put the tool
 /// where it has to be, so that a path along which joint 7 moves costs no less than the same path

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lattice/knots.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "swivel/core/problem/tool_path.hpp"
+
+namespace swivel {
+
+namespace {
+
+constexpr double kBend = 0.35;       // rad between two directions of the path
+constexpr double kOnTheSpot = 1e-9;  // m: a shorter step only turns the tool
+
+/// Returns whether the path bends at a layer, neither the first nor the last: its direction
+/// changes, or it begins or ends to turn on the spot.
+bool bends_at(const ToolPath& path, int layer) {
+  const auto way = [&](int i) -> Vector3d {
+    return path.layer(i + 1).tool.translation() - path.layer(i).tool.translation();
+  };
+  const Vector3d before = way(layer - 1), after = way(layer);
+  const bool stood = before.norm() < kOnTheSpot, stands = after.norm() < kOnTheSpot;
+  if (stood != stands) return true;
+  if (stood) return path.layer(layer).waypoint >= 0;
+  return std::atan2(before.cross(after).norm(), before.dot(after)) > kBend;
+}
+
+}  // namespace
+
+std::vector<int> knots_along(const ToolPath& path, const KnotSpacing& most) {
+  const int last = path.size() - 1;
+  std::vector<int> knots{0};
+  if (most.length <= 0) {
+    knots.resize(static_cast<std::size_t>(path.size()));
+    std::iota(knots.begin(), knots.end(), 0);
+    return knots;
+  }
+  for (int begin = 0; begin < last;) {
+    // How far the layers of a stretch are, in steps from knot to knot.
+    std::vector<double> way{0};
+    int end = begin;
+    do {
+      way.push_back(way.back() + std::max(path.layer(end).step_length / most.length,
+                                          path.layer(end).step_angle / most.angle));
+      ++end;
+    } while (end < last && !(most.at_bends && bends_at(path, end)));
+    const double steps = std::max(1.0, std::ceil(way.back() - 1e-9)), step = way.back() / steps;
+    for (double goal = 1; knots.back() < end; ++goal) {
+      const auto reached = static_cast<int>(
+          std::upper_bound(way.begin(), way.end(), goal * step + 1e-9) - way.begin() - 1);
+      if (begin + reached > knots.back()) knots.push_back(begin + reached);
+    }
+    begin = end;
+  }
+  return knots;
+}
+
+std::vector<Config> bounds_between_knots(const std::vector<int>& knots,
+                                         const std::vector<Config>& of_steps) {
+  std::vector<Config> bounds(knots.size() - 1, Config::Zero());
+  for (std::size_t k = 0; k < bounds.size(); ++k)
+    for (int i = knots[k]; i < knots[k + 1]; ++i)
+      bounds[k] += of_steps[of_steps.size() == 1 ? 0 : static_cast<std::size_t>(i)];
+  return bounds;
+}
+
+}  // namespace swivel

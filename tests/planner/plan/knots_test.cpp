@@ -1,0 +1,511 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Lattices of arcs whose nodes lie at knots, every few layers of the path: what is planned on them
+// against plain searches by the definition (docs/model.md "Knots").
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <memory>
+#include <set>
+#include <thread>
+
+#include "answer_order.hpp"
+#include "arms.hpp"
+#include "axes_robots.hpp"
+#include "brute_force.hpp"
+#include "diagnosis_of.hpp"
+#include "planners.hpp"
+#include "random_problem.hpp"
+#include "swivel/core/kinematics/closed_form/arm_class.hpp"
+#include "swivel/core/lattice/kinds/arc_lattice.hpp"
+#include "swivel/core/lattice/problem_path.hpp"
+#include "swivel/planner/job/plan_job.hpp"
+#include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/refine/refine.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
+#include "swivel/planner/verify/check.hpp"
+
+namespace swivel {
+namespace {
+
+using namespace test;
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+
+/// Arms whose joints turn less than once, or for ever, so that no lattice tells turns apart.
+std::vector<TestRobot> arms_of_one_turn() {
+  std::vector<TestRobot> robots;
+  for (const char* const name : {"panda_like", "gen3_like", "fetch_like"}) {
+    robots.push_back(data_robot(name));
+    robots.back().tip_link = "flange";
+  }
+  return robots;
+}
+
+/// A problem with a few knots, and layers between them. Bodies stand in the way of two thirds.
+PathProblem random_task(const TestRobot& robot, Random& random) {
+  PathProblem problem = random_problem(robot, random);
+  problem.limits.step_error.reset();
+  problem.limits.arm_slope = Limits().arm_slope;
+  problem.resolution.arc = random.uniform(0.3, 0.6);
+  problem.limits.joint_step = random.uniform(0.08, 0.4);
+  problem.limits.tool_path_error = std::exp(random.uniform(std::log(2e-4), std::log(2e-2)));
+  problem.waypoints.resize(2);
+  const double length = (problem.waypoints[1].position - problem.waypoints[0].position).norm();
+  problem.resolution.ds = length / (4 + random.below(7));
+  problem.resolution.dalpha = 0.5;
+  problem.resolution.knot = problem.resolution.ds * (2 + random.below(4));
+  return problem;
+}
+
+/// Adds small bodies that stand beside or in the arm where the best path without them is between
+/// two knots.
+void put_in_the_way(PathProblem& problem, Random& random) {
+  PlanOptions options;
+  options.planner = PlannerKind::kLazy;
+  const PlanResult free = plan(problem, options);
+  if (free.status != PlanStatus::kSolved || free.trajectory.size() < 4) return;
+  const Chain chain = PreparedRobot(problem).arm().chain;
+  for (int body = 0; body < 1 + random.below(3); ++body) {
+    const Config& q =
+        free.trajectory[static_cast<std::size_t>(
+                            1 + random.below(static_cast<int>(free.trajectory.size()) - 2))]
+            .q;
+    const auto k = static_cast<std::size_t>(2 + random.below(4));
+    SceneObject object;
+    object.name = "in_the_way_" + std::to_string(body);
+    object.shape = Sphere{random.uniform(0.005, 0.02)};
+    object.pose = random_pose(random, chain.displacements(q)[k] * chain.point[k], 0.1);
+    problem.scene.push_back(object);
+  }
+}
+
+/// What a search of one lattice says, by the definition.
+struct PlainSearch {
+  std::vector<int> path;  ///< empty: none
+  double cost = kNone, bound = kNone;
+  std::set<int> narrow;
+};
+
+/// Searches a lattice by the definition of KnotSearch: takes the first path of valid nodes and
+/// valid short edges to layer `goal`, drops its other invalid edges, and so on until all are valid.
+class PlainKnotSearch {
+ public:
+  PlainKnotSearch(PlainLattice& plain, int goal, double most)
+      : plain_(plain), goal_(static_cast<std::size_t>(goal)), most_(most) {}
+  [[nodiscard]] PlainSearch run() {
+    constexpr int kPatience = 8;
+    PlainSearch found;
+    for (int idle = 0; idle < kPatience;) {
+      solve();
+      const int first = first_of_answer(plain_.lattice(), least_[0], [&](int k) {
+        return *plain_.nodes()[0][static_cast<std::size_t>(k)];
+      });
+      if (first < 0) return found;
+      const double best = *std::min_element(least_[0].begin(), least_[0].end());
+      if (best >= most_) return found;
+      if (found.bound == kNone) found.bound = best;
+      const std::vector<int> path = path_from(first);
+      const std::size_t narrow = found.narrow.size();
+      if (drop_invalid(path, found.narrow)) {
+        found.path = path;
+        found.cost = least_[0][static_cast<std::size_t>(first)];
+        return found;
+      }
+      idle = found.narrow.size() > narrow ? 0 : idle + 1;
+    }
+    return found;
+  }
+
+ private:
+  /// Computes the least cost from each node to the goal, and the node that follows.
+  void solve() {
+    const auto& nodes = plain_.nodes();
+    least_.assign(goal_ + 1, {});
+    next_.assign(goal_ + 1, {});
+    for (std::size_t i = goal_ + 1; i-- > 0;) {
+      least_[i].assign(nodes[i].size(), kNone);
+      next_[i].assign(nodes[i].size(), 0);
+      for (std::size_t a = 0; a < nodes[i].size(); ++a) {
+        if (!nodes[i][a]) continue;
+        if (i == goal_) least_[i][a] = 0;
+        for (std::size_t b = 0; i < goal_ && b < nodes[i + 1].size(); ++b) {
+          if (!nodes[i + 1][b] || least_[i + 1][b] == kNone || dropped_.contains({i, a, b}))
+            continue;
+          const auto cost = plain_.chord(i, a, b);
+          if (!cost || !(*cost + least_[i + 1][b] < least_[i][a])) continue;
+          if (!plain_.lattice().can_halve(static_cast<int>(i)) && !is_valid(i, a, b)) continue;
+          least_[i][a] = *cost + least_[i + 1][b], next_[i][a] = b;
+        }
+      }
+    }
+  }
+  [[nodiscard]] bool is_valid(std::size_t i, std::size_t a, std::size_t b) {
+    const auto known = valid_.find({i, a, b});
+    if (known != valid_.end()) return known->second;
+    return valid_[{i, a, b}] = plain_.edge(i, a, b).has_value();
+  }
+  [[nodiscard]] std::vector<int> path_from(int first) const {
+    std::vector<int> path{first};
+    for (std::size_t i = 0; i < goal_; ++i)
+      path.push_back(static_cast<int>(next_[i][static_cast<std::size_t>(path[i])]));
+    return path;
+  }
+  /// Returns whether all edges of a path are valid; else drops those that are not.
+  [[nodiscard]] bool drop_invalid(const std::vector<int>& path, std::set<int>& narrow) {
+    bool valid = true;
+    for (std::size_t i = 0; i < goal_; ++i) {
+      const auto a = static_cast<std::size_t>(path[i]), b = static_cast<std::size_t>(path[i + 1]);
+      if (is_valid(i, a, b)) continue;
+      valid = false;
+      dropped_.insert({i, a, b});
+      narrow.insert(static_cast<int>(i));
+    }
+    return valid;
+  }
+
+  PlainLattice& plain_;
+  std::size_t goal_;
+  double most_;
+  std::set<std::array<std::size_t, 3>> dropped_;
+  std::map<std::array<std::size_t, 3>, bool> valid_;
+  std::vector<std::vector<double>> least_;
+  std::vector<std::vector<std::size_t>> next_;
+};
+
+/// Returns the sum over the rows of a path of what their moves cost.
+double cost_of_rows(const Lattice& lattice, const std::vector<int>& path) {
+  double cost = 0;
+  const std::vector<TrajectoryRow> rows = lattice.path_rows(path);
+  for (std::size_t i = 1; i < rows.size(); ++i)
+    cost += lattice.edge_cost(lattice.delta(rows[i - 1].q, rows[i].q));
+  return cost;
+}
+
+/// The answer by the definition, and the lattice searched last.
+struct PlainAnswer {
+  std::vector<TrajectoryRow> rows;  ///< empty: no path
+  double cost = kNone, bound = kNone;
+  int halvings = 0, deepest = -1;
+  std::unique_ptr<Lattice> last;
+};
+
+[[nodiscard]] bool can_halve(const Lattice& lattice) {
+  for (int step = 0; step + 1 < lattice.layers(); ++step)
+    if (lattice.can_halve(step)) return true;
+  return false;
+}
+
+/// Returns a lattice with nodes at all layers from the knot before a layer to the one after it.
+std::unique_ptr<Lattice> split_about(const Lattice& lattice, int layer) {
+  const int first = lattice.layer_of_rows(std::max(0, layer - 1)),
+            last = lattice.layer_of_rows(std::min(layer + 1, lattice.layers() - 1));
+  std::unique_ptr<Lattice> finer;
+  for (;;) {
+    const Lattice& now = finer ? *finer : lattice;
+    std::set<int> steps;
+    for (int step = 0; step + 1 < now.layers(); ++step)
+      if (now.layer_of_rows(step) >= first && now.layer_of_rows(step) < last) steps.insert(step);
+    std::unique_ptr<Lattice> next = now.with_knots(steps, {});
+    if (!next) return finer;
+    finer = std::move(next);
+  }
+}
+
+/// Searches and halves steps, as long as the definition says so.
+PlainAnswer plan_plainly(const PreparedRobot& robot, const PathProblem& problem,
+                         const ToolPath& path) {
+  const EdgeRule rule = robot.world().edge_rule(robot.radii());
+  PlainAnswer answer;
+  answer.last =
+      std::make_unique<ArcLattice>(robot.arm().chain, robot.arm_class().lock, path, problem);
+  double chords = kNone;
+  for (;; ++answer.halvings) {
+    const Lattice& lattice = *answer.last;
+    PlainLattice plain(lattice, robot.world(), rule, [](int, int, int) { return true; });
+    const double most = can_halve(lattice) ? answer.cost : kNone;
+    const PlainSearch found = PlainKnotSearch(plain, lattice.layers() - 1, most).run();
+    if (const double bound = can_halve(lattice) || found.path.empty() ? found.bound : found.cost;
+        bound < kNone)
+      answer.bound = bound;
+    if (const double cost = found.path.empty() ? kNone : cost_of_rows(lattice, found.path);
+        cost < answer.cost) {
+      answer.cost = cost;
+      chords = found.cost;
+      answer.rows = lattice.path_rows(found.path);
+    }
+    if (!found.narrow.empty()) {
+      if (chords <= 1.01 * found.bound) return answer;
+      answer.last = lattice.with_knots(found.narrow, {});
+      continue;
+    }
+    if (!answer.rows.empty()) return answer;
+    // The furthest layer to which paths of valid nodes and valid short edges lead.
+    PlainSearch reach;
+    int deepest = lattice.layers() - 2;
+    for (; deepest >= 0; --deepest)
+      if (reach = PlainKnotSearch(plain, deepest, kNone).run(); reach.bound < kNone) break;
+    answer.deepest = deepest;
+    if (!reach.narrow.empty()) {
+      answer.last = lattice.with_knots(reach.narrow, {});
+    } else {
+      if (deepest < 0) return answer;
+      auto finer = split_about(lattice, deepest);
+      if (!finer) return answer;
+      answer.last = std::move(finer);
+    }
+  }
+}
+
+/// Returns the least cost of a path through a lattice's nodes with all steps halved to every layer.
+double least_on_all_layers(const PreparedRobot& robot, std::unique_ptr<Lattice> lattice) {
+  for (;;) {
+    std::set<int> steps;
+    for (int step = 0; step + 1 < lattice->layers(); ++step) steps.insert(step);
+    std::unique_ptr<Lattice> finer = lattice->with_knots(steps, {});
+    if (!finer) break;
+    lattice = std::move(finer);
+  }
+  const EdgeRule rule = robot.world().edge_rule(robot.radii());
+  const BruteForcePath best =
+      brute_force(*lattice, robot.world(), rule, [](int, int, int) { return true; });
+  return best.solved ? best.cost : kNone;
+}
+
+struct KnotCounts {
+  int solved = 0, infeasible = 0, halved = 0, halved_to_solve = 0, dearer_than_bound = 0;
+};
+
+void check_agreement(const PathProblem& problem, const std::string& what, KnotCounts& counts) {
+  const PreparedRobot robot(problem);
+  const ToolPath path = problem_path(problem, robot.arm().chain);
+  PlainAnswer truth = plan_plainly(robot, problem, path);
+  std::optional<PlanResult> first;
+  for (const PlannerKind planner : kPlanners) {
+    const PlanResult result = plan(robot, problem, with_all_evidence(planner));
+    ASSERT_EQ(result.status == PlanStatus::kSolved, !truth.rows.empty()) << what << result.planner;
+    if (!first) first = result;
+    ASSERT_EQ(diagnosis_of(result).cause, diagnosis_of(*first).cause) << what << result.planner;
+    ASSERT_EQ(diagnosis_of(result).reached_layer, diagnosis_of(*first).reached_layer)
+        << what << result.planner;
+    if (result.lattice.knots && result.lattice.knots->bound) {
+      ASSERT_EQ(*result.lattice.knots->bound, truth.bound) << what << result.planner;
+    }
+    if (truth.rows.empty()) continue;
+    ASSERT_NEAR(result.cost, truth.cost, 1e-9) << what << result.planner;
+    ASSERT_EQ(result.trajectory.size(), truth.rows.size()) << what << result.planner;
+    for (std::size_t i = 0; i < truth.rows.size(); ++i)
+      ASSERT_EQ(result.trajectory[i].q, truth.rows[i].q) << what << result.planner << " row " << i;
+  }
+  counts.halved += truth.halvings > 0;
+  (truth.rows.empty() ? counts.infeasible : counts.solved)++;
+  if (truth.rows.empty()) {
+    ASSERT_EQ(diagnosis_of(*first).reached_layer.value_or(-1), truth.deepest) << what;
+    return;
+  }
+  const CheckResult check = check_trajectory(robot, problem, first->trajectory);
+  ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
+  ASSERT_NEAR(check.cost, first->cost, 1e-9) << what;
+  if (!first->lattice.knots) return;  // every layer is a knot
+  const double least = least_on_all_layers(robot, std::move(truth.last));
+  ASSERT_LE(*first->lattice.knots->bound, least + 1e-9) << what;
+  ASSERT_GE(*first->lattice.knots->gap, truth.cost / least - 1 - 1e-9) << what;
+  counts.dearer_than_bound += *first->lattice.knots->gap > 1e-6;
+}
+
+/// Every planner finds what the definition says, at all levels of halving.
+TEST(Knots, FourPlannersAndBruteForceOnRandomProblems) {
+  const std::uint64_t base = seed("Knots");
+  const auto robots = arms_of_one_turn();
+  KnotCounts counts;
+  const int count = trials(300);
+  for (int trial = 0; trial < count; ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    PathProblem problem =
+        random_task(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    if (trial % 4 != 0) put_in_the_way(problem, random);
+    check_agreement(problem,
+                    "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) +
+                        " robot " + problem.source + ' ',
+                    counts);
+    if (HasFatalFailure()) return;
+  }
+  std::printf("%d problems: %d solved, %d infeasible, %d with steps halved, %d above the bound\n",
+              count, counts.solved, counts.infeasible, counts.halved, counts.dearer_than_bound);
+  EXPECT_GE(counts.solved, at_least_among(count / 4));
+  EXPECT_GE(counts.infeasible, at_least_among(count / 20));
+  EXPECT_GE(counts.halved, at_least_among(count / 20));
+}
+
+/// Moves a body of the scene a little, or far.
+void move_some_object(Planner& planner, Random& random) {
+  const std::vector<SceneObject>& scene = planner.problem().scene;
+  const SceneObject& object =
+      scene[static_cast<std::size_t>(random.below(static_cast<int>(scene.size())))];
+  Pose pose = object.pose;
+  const double far = random.coin(0.7) ? 0.02 : 0.2;
+  for (int k = 0; k < 3; ++k) pose.translation()[k] += random.uniform(-far, far);
+  planner.move(object.name, pose);
+}
+
+void expect_same(const PlanResult& result, const PlanResult& other, const std::string& what) {
+  ASSERT_EQ(result.status, other.status) << what;
+  ASSERT_EQ(result.cost, other.cost) << what;
+  ASSERT_EQ(result.lattice.nodes, other.lattice.nodes) << what;
+  ASSERT_EQ(result.lattice.knots.has_value(), other.lattice.knots.has_value()) << what;
+  if (result.lattice.knots) {
+    ASSERT_EQ(result.lattice.knots->bound, other.lattice.knots->bound) << what;
+  }
+  ASSERT_EQ(result.trajectory.size(), other.trajectory.size()) << what;
+  for (std::size_t i = 0; i < result.trajectory.size(); ++i)
+    ASSERT_EQ(result.trajectory[i].q, other.trajectory[i].q) << what << " row " << i;
+  ASSERT_EQ(diagnosis_of(result).reached_layer, diagnosis_of(other).reached_layer) << what;
+  ASSERT_EQ(diagnosis_of(result).cause, diagnosis_of(other).cause) << what;
+}
+
+/// A planner that plans again after bodies have moved, at one thread or two, answers as a fresh one
+/// does, halvings included.
+TEST(Knots, PlansAgainAsAFreshPlannerDoes) {
+  const std::uint64_t base = seed("Knots.Again");
+  const auto robots = arms_of_one_turn();
+  const int count = trials(60);
+  int plans = 0, halved = 0, solved = 0;
+  for (int trial = 0; trial < count; ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    PathProblem problem =
+        random_task(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    put_in_the_way(problem, random);
+    if (problem.scene.empty()) continue;
+    Planner planner(problem);
+    for (int again = 0; again < 6; ++again) {
+      if (again > 0) move_some_object(planner, random);
+      const PlannerKind kind = random.coin() ? PlannerKind::kLazy : PlannerKind::kParallel;
+      const PlanResult result = planner.plan(with_all_evidence(kind));
+      const PlanResult fresh = plan(planner.problem(), with_all_evidence(PlannerKind::kLazy));
+      expect_same(result, fresh,
+                  "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) +
+                      " plan " + std::to_string(again));
+      if (HasFatalFailure()) return;
+      ++plans;
+      solved += result.status == PlanStatus::kSolved;
+      const PreparedRobot robot(planner.problem());
+      const ToolPath path = problem_path(planner.problem(), robot.arm().chain);
+      halved +=
+          result.lattice.layers >
+          ArcLattice(robot.arm().chain, robot.arm_class().lock, path, planner.problem()).layers();
+    }
+  }
+  std::printf("%d plans of planners used again: %d solved, %d with steps halved\n", plans, solved,
+              halved);
+  EXPECT_GE(plans, at_least_among(3 * count));
+  EXPECT_GE(solved, at_least_among(plans / 5));
+  EXPECT_GE(halved, at_least_among(plans / 20));
+}
+
+/// Returns whether the first search of a problem has an answer, and steps worth halving.
+bool halves_after_an_answer(const PathProblem& problem) {
+  const PreparedRobot robot(problem);
+  const ToolPath path = problem_path(problem, robot.arm().chain);
+  const EdgeRule rule = robot.world().edge_rule(robot.radii());
+  const ArcLattice lattice(robot.arm().chain, robot.arm_class().lock, path, problem);
+  PlainLattice plain(lattice, robot.world(), rule, [](int, int, int) { return true; });
+  const PlainSearch found = PlainKnotSearch(plain, lattice.layers() - 1, kNone).run();
+  return !found.path.empty() && !found.narrow.empty() && found.cost > 1.01 * found.bound;
+}
+
+/// Where time ends while steps are halved, the answer is that of the search before, and proved.
+TEST(Knots, AStopWhileStepsAreHalvedKeepsTheAnswer) {
+  const std::uint64_t base = seed("Knots.Stop");
+  const auto robots = arms_of_one_turn();
+  int stopped = 0;
+  for (std::uint64_t trial = 0; trial < 3000 && stopped < 2; ++trial) {
+    Random random(base + trial);
+    const PathProblem problem = random_task(robots[trial % robots.size()], random);
+    if (!halves_after_an_answer(problem)) continue;
+    PlanOptions options;
+    options.planner = PlannerKind::kLazy;
+    options.timeout_s = 2;
+    const auto begin = std::chrono::steady_clock::now();
+    bool searched = false;
+    options.progress = [&](const Progress& progress) {
+      if (progress.stage == Stage::kSearch) searched = true;
+      if (progress.stage == Stage::kSweep && searched)
+        std::this_thread::sleep_until(begin + std::chrono::milliseconds(1700));
+    };
+    const PlanResult result = plan(problem, options);
+    ASSERT_EQ(result.status, PlanStatus::kSolved) << "trial " << trial;
+    ASSERT_TRUE(result.lattice.knots && !result.lattice.knots->halved) << "trial " << trial;
+    ASSERT_TRUE(result.checked) << "trial " << trial;
+    ++stopped;
+  }
+  EXPECT_EQ(stopped, 2);
+}
+
+/// Says where every layer has nodes although the problem asks for knots.
+TEST(Knots, IsWarnedOfWhereEveryLayerHasNodes) {
+  const auto told = [](const std::vector<std::string>& warnings, const std::string& what) {
+    return std::find(warnings.begin(), warnings.end(),
+                     "resolution.knot is given in vain: " + what +
+                         " have nodes at every layer of the path") != warnings.end();
+  };
+  Random random(seed("Knots.Warned"));
+  PathProblem closed = random_task(arms_of_one_turn().front(), random);
+  closed.scene.clear();
+  closed.start.reset();
+  closed.waypoints.push_back(closed.waypoints.front());
+  const PlanResult open = plan(closed);
+  EXPECT_FALSE(told(open.warnings, "closed paths"));
+  EXPECT_TRUE(open.lattice.knots);
+  closed.closed = true;
+  const PlanResult around = plan(closed);
+  EXPECT_TRUE(told(around.warnings, "closed paths"));
+  EXPECT_FALSE(around.lattice.knots);
+  closed.resolution.knot = 0;
+  EXPECT_FALSE(told(plan(closed).warnings, "closed paths"));
+
+  Problem job = io::load_problem(data_dir() / "problems/kr6_weld_pipe_job.yaml");
+  const Answer plain = plan_job(job);
+  EXPECT_FALSE(told(plain.warnings, "strokes of jobs"));
+  for (Stroke& stroke : job.arm().strokes) stroke.resolution.knot = 0.06;
+  const Answer warned = plan_job(job);
+  EXPECT_TRUE(told(warned.warnings, "strokes of jobs"));
+  EXPECT_EQ(warned.cost, plain.cost);
+}
+
+/// With knots of 60 mm and nodes 0.06 rad apart the problems of data/ along arcs cost hardly more
+/// than their refined paths, however fine the layers are.
+TEST(Knots, PlansComeNearTheirRefinedPaths) {
+  for (const char* const name : {"panda_weld_seam", "panda_polish_cover", "gen3_glue_bead",
+                                 "xarm7_polish_raster", "fetch_wipe_table", "ur5e_deburr_edge",
+                                 "kr6_weld_pipe", "ur10e_rail_seam", "kr6_turntable_pipe"}) {
+    PathProblem problem =
+        io::load_path_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
+    const double every_layer = plan(problem).cost;
+    problem.resolution.arc = problem.resolution.knot.emplace(0.06);
+    const PreparedRobot robot(problem);
+    const PlanResult found = plan(robot, problem);
+    ASSERT_EQ(found.status, PlanStatus::kSolved) << name;
+    const Refined refined = refine(robot, problem, found.trajectory);
+    std::printf("%s: %.4f at every layer, %.4f at knots, %.4f refined\n", name, every_layer,
+                found.cost, refined.cost);
+    EXPECT_LE(found.cost, 1.02 * refined.cost) << name;
+    EXPECT_LE(found.cost, 1.001 * every_layer) << name;
+  }
+  PathProblem seam = io::load_path_problem(data_dir() / "problems/panda_weld_seam.yaml");
+  seam.resolution.arc = seam.resolution.knot.emplace(0.06);
+  double least = kNone, most = 0;
+  for (const double ds : {0.0025, 0.005, 0.01, 0.02}) {
+    seam.resolution.ds = ds;
+    const double cost = plan(seam).cost;
+    least = std::min(least, cost), most = std::max(most, cost);
+  }
+  std::printf("panda_weld_seam with ds from 2.5 to 20 mm: %.4f to %.4f\n", least, most);
+  EXPECT_LE(most, 1.02 * least);
+}
+
+}  // namespace
+}  // namespace swivel
