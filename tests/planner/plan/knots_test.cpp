@@ -477,7 +477,7 @@ TEST(Knots, IsWarnedOfWhereEveryLayerHasNodes) {
 }
 
 /// With knots of 60 mm and nodes 0.06 rad apart the problems of data/ along arcs cost hardly more
-/// than their refined paths, however fine the layers are.
+/// than their refined paths, however fine the layers are. The closed one has nodes at every layer.
 TEST(Knots, PlansComeNearTheirRefinedPaths) {
   for (const char* const name : {"panda_weld_seam", "panda_polish_cover", "gen3_glue_bead",
                                  "xarm7_polish_raster", "fetch_wipe_table", "ur5e_deburr_edge",
