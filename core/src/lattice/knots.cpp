@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "swivel/core/lattice/places_near.hpp"
 #include "swivel/core/problem/tool_path.hpp"
 
 namespace swivel {
@@ -12,18 +13,21 @@ namespace swivel {
 namespace {
 
 constexpr double kBend = 0.35;       // rad between two directions of the path
-constexpr double kOnTheSpot = 1e-9;  // m: a shorter step only turns the tool
+constexpr double kOnTheSpot = 1e-9;  // m: a shorter step only turns the tool, by however little
 
 /// Returns whether the path bends at a layer, neither the first nor the last: its direction
-/// changes, or it begins or ends to turn on the spot.
+/// changes, that of a turn on the spot being its axis, or such a turn begins or ends.
 bool bends_at(const ToolPath& path, int layer) {
+  const auto stands = [&](int i) {
+    const PathLayer& step = path.layer(i);
+    return step.step_length < kOnTheSpot || turns_on_the_spot(step);
+  };
+  if (stands(layer - 1) != stands(layer)) return true;
   const auto way = [&](int i) -> Vector3d {
-    return path.layer(i + 1).tool.translation() - path.layer(i).tool.translation();
+    return stands(i) ? path.layer(i).step_rotation
+                     : path.layer(i + 1).tool.translation() - path.layer(i).tool.translation();
   };
   const Vector3d before = way(layer - 1), after = way(layer);
-  const bool stood = before.norm() < kOnTheSpot, stands = after.norm() < kOnTheSpot;
-  if (stood != stands) return true;
-  if (stood) return path.layer(layer).waypoint >= 0;
   return std::atan2(before.cross(after).norm(), before.dot(after)) > kBend;
 }
 
