@@ -78,10 +78,13 @@ int deepest_valid_layer(CostToGo& cost_to_go, Validity& validity, const PathFirs
     if (optimistic < 0) return -1;
     const std::int64_t removed = cost_to_go.verdicts().removed();
     cost_to_go.sweep(optimistic);
-    KnotSearch* const knots = options.knots;
-    if (knots) knots->bound = kUnreachable;
-    if (!search(cost_to_go, validity, options, counters, {}).path.empty()) return optimistic;
-    if (knots && !knots->narrow.empty()) return -1;
+    KnotSearch on_the_way;
+    PathFirstOptions to_there = options;
+    if (options.knots) to_there.knots = &on_the_way;
+    const bool found = !search(cost_to_go, validity, to_there, counters, {}).path.empty();
+    if (options.knots) options.knots->narrow = on_the_way.narrow;
+    if (found) return optimistic;
+    if (!on_the_way.narrow.empty()) return -1;
     if (cost_to_go.verdicts().removed() == removed)
       throw std::logic_error("a round of the search removed nothing: it would never end");
   }

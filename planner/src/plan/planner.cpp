@@ -296,12 +296,11 @@ struct Planner::Impl {
     result.warnings = *of_robot;
     for (const auto& lines :
          {unused_key_warnings(unused_keys(robot->arm().chain, robot->arm_class()), problem),
-          unused_key_warnings(problem.closed && !problem.start
-                                  ? unused_knot(robot->arm_class(), "closed paths")
-                                  : std::vector<UnusedKey>(),
-                              problem),
           path_warnings(*robot, problem, layout->path, *world)})
       result.warnings.insert(result.warnings.end(), lines.begin(), lines.end());
+    if (!layout->first.lattice->has_layers_between())
+      add_lines(unused_key_warnings(unused_knot(robot->arm_class(), "closed paths"), problem),
+                result.warnings);
     SpecialPairs pairs;
     pairs.add(*world);
     result.dropped_pairs = std::move(pairs.dropped);

@@ -86,9 +86,7 @@ Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity,
     if (found.outcome.path.empty() && !closes &&
         !(knots && (knots->most != kUnreachable || worth_halving(*knots, {})))) {
       cost_to_go.budget().tell(Stage::kReach);
-      const double bound = knots ? knots->bound : kUnreachable;
       found.deepest = deepest_valid_layer(cost_to_go, validity, path_first_options, searched);
-      if (knots) knots->bound = bound;
       // the path tried last is valid
       if (*found.deepest >= 0) found.valid_path = searched.candidate;
       time_ms["reach"] += watch.lap();

@@ -40,6 +40,13 @@ Vector3d foot(const Chain& chain, std::size_t axis, std::size_t other) {
   return chain.point[axis] + (d.cross(b).dot(n) / sine2) * a;
 }
 
+/// Returns which joints count as circles although they are bounded.
+std::array<bool, kDof> bounded_circles(const Chain& chain, const SelfMotion& motion) {
+  std::array<bool, kDof> circles = motion.circles();
+  for (std::size_t j = 0; j < kDof; ++j) circles[j] = circles[j] && !chain.limit[j].continuous;
+  return circles;
+}
+
 /// Throws InputError unless the posture that the problem gives for an end of the path is within its
 /// limits and puts the tool there.
 void require_fits(PathEnd which, const PathProblem& problem, const Chain& chain,
@@ -96,8 +103,7 @@ ArcLattice::Data ArcLattice::build(const Chain& chain, const LockMethod& method,
   result.motion = std::make_shared<const SelfMotion>(chain, method, problem.limits.joint_margin,
                                                      scaling(chain, problem.cost));
   const SelfMotion& motion = *result.motion;
-  for (std::size_t j = 0; j < kDof; ++j)
-    result.circles[j] = motion.circles()[j] && !chain.limit[j].continuous;
+  result.circles = bounded_circles(chain, motion);
   const ArcLayerMaker maker(chain, method, problem, motion);
   CarriedNodes before;
   for (int i = 0; i < path.size(); ++i) {
@@ -347,8 +353,7 @@ std::unique_ptr<Lattice> ArcLattice::with_knots(const std::set<int>& steps,
   finer.next.clear();
   finer.on_circles.clear();
   finer.windings.clear();
-  for (std::size_t j = 0; j < kDof; ++j)
-    finer.circles[j] = data_.motion->circles()[j] && !chain().limit[j].continuous;
+  finer.circles = bounded_circles(chain(), *data_.motion);
   finer.points = data_.unwound.empty() ? all_points() : data_.unwound;
   finer.unwound.clear();
   const ArcLayerMaker maker(chain(), method_, problem_, *data_.motion);
@@ -395,7 +400,7 @@ std::unique_ptr<Lattice> ArcLattice::with_windings(const Joints& joints) const {
   std::vector<std::vector<Point>> all;
   wound.next.clear();
   wound.on_circles.clear();
-  if (wound.unwound.empty()) wound.unwound = all_points();
+  if (has_layers_between() && wound.unwound.empty()) wound.unwound = all_points();
   wound.windings.push_back(joints);
   for (std::size_t j = 0; j < kDof; ++j) wound.circles[j] = wound.circles[j] && !joints[j];
   std::vector<WoundPoint> images;

@@ -92,28 +92,8 @@ bool LayerValues::set_limit() {
   return true;
 }
 
-const std::vector<LayerValues::Values>& LayerValues::forward_bounds() {
-  if (!forward_.empty()) return forward_;
+void LayerValues::go_forward(std::span<const Values> known, std::span<const int> layer_here) {
   const TraceSpan span("forward bounds");
-  for (int layer = 0; layer < lattice().layers(); ++layer) {
-    budget_.poll();
-    Values here;
-    if (layer == 0)
-      begin(layer, here);
-    else
-      relax(layer - 1, layer, layer - 1, forward_.back(), here);
-    leave_out_removed(layer, here);
-    forward_.push_back(std::move(here));
-  }
-  return forward_;
-}
-
-void LayerValues::bound_by_coarser(CostToGo& coarser, std::span<const int> layer_here) {
-  auto* const other = dynamic_cast<LayerValues*>(&coarser);
-  if (!other) return;
-  share_nodes(*other, layer_here);
-  if (lattice().has_node_costs() || lattice().is_closed()) return;
-  const std::vector<Values>& known = other->forward_bounds();
   forward_.clear();
   std::size_t next = 0;
   for (int layer = 0; layer < lattice().layers(); ++layer) {
@@ -121,11 +101,22 @@ void LayerValues::bound_by_coarser(CostToGo& coarser, std::span<const int> layer
     Values here;
     if (next < layer_here.size() && layer_here[next] == layer)
       here = known[next++];
+    else if (layer == 0)
+      begin(layer, here);
     else
       relax(layer - 1, layer, layer - 1, forward_.back(), here);
     leave_out_removed(layer, here);
     forward_.push_back(std::move(here));
   }
+}
+
+void LayerValues::bound_by_coarser(CostToGo& coarser, std::span<const int> layer_here) {
+  auto* const other = dynamic_cast<LayerValues*>(&coarser);
+  if (!other) return;
+  share_nodes(*other, layer_here);
+  if (lattice().has_node_costs() || lattice().is_closed()) return;
+  if (other->forward_.empty()) other->go_forward({}, {});
+  go_forward(other->forward_, layer_here);
   by_coarser_ = true;
   bounded_ = false;
   expected_ = other->goal_layer() + 1 == other->lattice().layers() ? other->best() : 0;

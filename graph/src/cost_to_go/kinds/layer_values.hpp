@@ -90,9 +90,10 @@ class LayerValues : public CostToGo {
   /// is likely to cost, or to infinity where that slack is wide. Returns false where no path leads
   /// to the goal.
   bool set_limit_by_bounds();
-  /// Returns for each node less than any path from layer 0 costs, over what is not removed but for
-  /// edges; computes it for what the coarser lattice's bounds do not say.
-  [[nodiscard]] const std::vector<Values>& forward_bounds();
+  /// Computes for each node what no path from layer 0 costs less than, over the nodes that are not
+  /// removed and all edges. Takes from `known` the values of its layers, layer k of which is layer
+  /// `layer_here[k]` here.
+  void go_forward(std::span<const Values> known, std::span<const int> layer_here);
   void sweep_once();
   /// Returns whether the best path costs so much that values may be too high for it.
   [[nodiscard]] bool beyond_limit() const {
@@ -123,7 +124,7 @@ class LayerValues : public CostToGo {
     std::vector<Values> values;  // [layer][slot]
   };
   Before before_;
-  /// forward_bounds(), if they are known; by bound_by_coarser() the limit is theirs.
+  /// What go_forward() found, if it was called; by bound_by_coarser() the limit is theirs.
   std::vector<Values> forward_;
   bool by_coarser_ = false;
   double expected_ = 0;      // what the best path to the last layer is likely to cost, at least

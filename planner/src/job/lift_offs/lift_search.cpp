@@ -156,9 +156,8 @@ std::vector<double> LiftSearch::line_costs(int layer, const Vector3d& offset) {
     path.end_at(end);
   }
   path.begin_at(s, path_.layer(layer).tool, 0, line.source);
-  const auto lattice =
-      with_all_windings(make_lattice(robot_->arm().chain, robot_->arm_class(), path,
-                                     on_all_layers(line, robot_->arm_class()), budget_));
+  const auto lattice = with_all_windings(
+      make_lattice(robot_->arm().chain, robot_->arm_class(), path, line, budget_));
   CollisionValidity validity(*lattice, world_, world_.edge_rule(robot_->radii()), line.limits.edges,
                              proofs_, executor_, 0, budget_);
   HookedValidity hooked(*lattice, validity, hooks_, budget_);

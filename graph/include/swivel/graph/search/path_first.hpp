@@ -93,8 +93,8 @@ struct PathFirstOptions {
   /// True: neighbours are asked about on other threads while the caller takes the answers about
   /// those before them.
   bool overlap_region_questions = false;
-  /// Where to note what the search says of steps between knots; null: nowhere. Only edges of the
-  /// p_j are asked about then, all of each p_j.
+  /// Where to note what the search says of steps between knots; null: nowhere. Of edges that are
+  /// not short only those of the p_j are asked about then, all of each p_j.
   KnotSearch* knots = nullptr;
 };
 
@@ -137,8 +137,8 @@ void check_failure_hints(CostToGo& cost_to_go, Validity& validity,
 /// Returns the deepest layer that a valid path from layer 0 reaches, once path_first() has found
 /// none; -1 when layer 0 has no valid node. The cost-to-go then has that layer as its goal, and
 /// `counters` the best valid path there, in the order of answers, as its candidate: whatever was
-/// asked before. With PathFirstOptions::knots, it ends where steps on the way turn out to be
-/// narrow, and what it returns means nothing. Throws Stopped.
+/// asked before. With PathFirstOptions::knots, whose `narrow` is then that of the way there, it
+/// ends with -1 where steps turn out to be narrow before a path is found. Throws Stopped.
 [[nodiscard]] int deepest_valid_layer(CostToGo& cost_to_go, Validity& validity,
                                       const PathFirstOptions& options, SearchCounters& counters);
 
