@@ -21,6 +21,7 @@
 #include "swivel/io/tables/shards.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/study/campaign.hpp"
+#include "terminal/large_pages.hpp"
 #include "terminal/progress.hpp"
 #include "terminal/terminal.hpp"
 
@@ -194,6 +195,7 @@ void plan_episodes(const std::optional<PreparedRobot>& robot, const ChosenProble
     run_campaign(*robot, drawn.problem, options, row_done);
   else
     run_campaign(drawn.problem, options, row_done);
+  if (file) file->flush();
 }
 
 /// Writes results, summary and page, prints the summary, and finishes the results file if all rows
@@ -210,6 +212,7 @@ void write_results(const CampaignArguments& arguments, const std::vector<Episode
 /// Plans the campaign of the command line, from where an earlier run of it ended, writes and prints
 /// its results. Returns the exit code. Throws InputError.
 int run(const CampaignArguments& arguments) {
+  use_heaps_of_threads();
   CampaignOptions options = campaign_options(arguments);
   if (!arguments.report.empty()) require_pages();
   require_table_name("--out", arguments.out, "the table of episodes", "--json for a summary");

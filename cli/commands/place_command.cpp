@@ -28,6 +28,7 @@
 #include "swivel/io/tables/shards.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/study/place.hpp"
+#include "terminal/large_pages.hpp"
 #include "terminal/progress.hpp"
 
 namespace swivel::cli {
@@ -340,6 +341,7 @@ std::vector<PlacedEnd> ends_on_page(PlacementPlanner& planner,
 /// Plans the placements of the command line, writes and prints them. Returns the exit code; that of
 /// a shard does not say whether a placement has a path, which all shards say together.
 int run(PlaceArguments arguments) {
+  use_heaps_of_threads();
   PlanOptions options = arguments.search.plan_options();
   if (arguments.timeout) options.timeout_s = positive(*arguments.timeout, "--timeout");
   const AskedPlacements asked = asked_placements(arguments);

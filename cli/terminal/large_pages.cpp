@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <cstdlib>
+#include <limits>
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -32,6 +33,12 @@ void use_large_pages() {
   // If the system has no large pages, or no room for the heap, small pages remain in use.
   const std::uintptr_t begin = (before + kPage - 1) / kPage * kPage, end = heap_end();
   if (begin < end) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+#endif
+}
+
+void use_heaps_of_threads() {
+#ifdef __GLIBC__
+  mallopt(M_ARENA_MAX, std::numeric_limits<int>::max());
 #endif
 }
 

@@ -183,4 +183,33 @@ TEST(Files, CampaignsKnowTheirSettings) {
 }
 
 }  // namespace
+TEST(Files, RowsOfACampaignAreWrittenInBlocks) {
+  const TempFolder folder;
+  const fs::path csv = folder.path() / "r.csv", part = folder.path() / "r.csv.part";
+  const auto rows_in_file = [&] {
+    std::ifstream file(part);
+    return std::count(std::istreambuf_iterator<char>(file), {}, '\n') - 2;  // settings, header
+  };
+  const auto row = [](std::uint64_t k) { return EpisodeRow(k, std::string("broken")); };
+  {
+    CampaignFile file(csv, {}, {}, 1000);
+    file.append(row(0));
+    EXPECT_EQ(rows_in_file(), 1);  // nothing was written for long
+    for (std::uint64_t k = 1; k < 400; ++k) file.append(row(k));
+    EXPECT_EQ(file.rows().size(), 400u);
+    file.flush();
+    EXPECT_EQ(rows_in_file(), 400);
+    file.append(row(400));
+    file.append(row(401));
+    file.keep(401);
+    EXPECT_EQ(rows_in_file(), 401);
+    std::this_thread::sleep_for(CampaignFile::kBetweenWrites);
+    file.append(row(401));
+    EXPECT_EQ(rows_in_file(), 402);
+    file.append(row(402));
+  }
+  EXPECT_EQ(rows_in_file(), 403);
+  EXPECT_EQ(CampaignFile(csv, {}, {}, 1000).rows().size(), 403u);
+}
+
 }  // namespace swivel::io::test

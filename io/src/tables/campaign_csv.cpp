@@ -236,12 +236,14 @@ EpisodeTable load_rows(const fs::path& csv) {
 
 CampaignFile::~CampaignFile() {
   if (descriptor_ < 0) return;
+  static_cast<void>(write_all(descriptor_, waiting_));
   std::error_code ignored;
   if (rows_.empty()) fs::remove(part_, ignored);
   close(descriptor_);
 }
 
 void CampaignFile::keep(std::size_t count) {
+  flush();
   rows_.resize(count);
   ends_.resize(count + 1);
   if (ftruncate(descriptor_, static_cast<off_t>(ends_.back())) != 0) fail(errno);
@@ -249,9 +251,16 @@ void CampaignFile::keep(std::size_t count) {
 
 void CampaignFile::append(const EpisodeRow& row) {
   const std::string line = csv_line(row);
-  write(line);
+  waiting_ += line;
   rows_.push_back(row);
   ends_.push_back(ends_.back() + line.size());
+  if (std::chrono::steady_clock::now() - written_ >= kBetweenWrites) flush();
+}
+
+void CampaignFile::flush() {
+  if (waiting_.empty()) return;
+  write(std::exchange(waiting_, {}));
+  written_ = std::chrono::steady_clock::now();
 }
 
 std::string CampaignFile::csv() const {

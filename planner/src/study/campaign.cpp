@@ -21,29 +21,36 @@ namespace swivel {
 
 namespace {
 
-/// Delivers rows in order: holds a row back until all before it have been delivered.
+/// Delivers rows in order: holds a row back until all before it have been delivered. Rows are
+/// delivered by one thread at a time, while others add theirs.
 class InOrder {
  public:
   InOrder(std::uint64_t first, const std::function<void(const EpisodeRow&)>& row_done)
       : next_(first), row_done_(row_done) {}
 
+  /// Adds the row of episode `k` of the shard. Delivers those whose turn it is, unless another
+  /// thread does. Throws what the delivery throws.
   void add(std::uint64_t k, EpisodeRow row) {
-    const std::lock_guard lock(mutex_);
+    std::unique_lock lock(mutex_);
     waiting_.emplace(k, std::move(row));
-    // A row whose delivery throws stays first, because rows delivered after it would leave a gap.
-    for (; !waiting_.empty() && waiting_.begin()->first == next_ && !failed_;
-         ++next_, waiting_.erase(waiting_.begin())) {
-      failed_ = true;
-      row_done_(waiting_.begin()->second);
-      failed_ = false;
+    if (delivering_) return;
+    delivering_ = true;
+    while (!waiting_.empty() && waiting_.begin()->first == next_) {
+      const auto ready = waiting_.extract(waiting_.begin());
+      ++next_;
+      lock.unlock();
+      // After a row whose delivery throws none is delivered, because later ones would leave a gap.
+      row_done_(ready.mapped());
+      lock.lock();
     }
+    delivering_ = false;
   }
 
  private:
   std::mutex mutex_;
   std::map<std::uint64_t, EpisodeRow> waiting_;
   std::uint64_t next_;
-  bool failed_ = false;
+  bool delivering_ = false;
   const std::function<void(const EpisodeRow&)>& row_done_;
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -22,16 +23,20 @@ struct RunSettings {
 };
 
 /// The rows of a campaign's RESULTS.csv, docs/formats.md, while it runs. They are appended to
-/// RESULTS.csv.part as they come, so that a killed campaign can continue from there. The first line
-/// of that file holds the settings.
+/// RESULTS.csv.part as they come, in blocks of kBetweenWrites, so that a killed campaign can
+/// continue from there. The first line of that file holds the settings.
 class CampaignFile {
  public:
+  /// Time between two writes. A campaign that is killed loses the rows of so much time at most.
+  static constexpr std::chrono::milliseconds kBetweenWrites{100};
+
   /// Opens or creates the .part file of `csv` and locks it against a second process. A torn last
   /// line is dropped. Throws InputError if the file belongs to other settings, and says what
   /// differs, or if its rows are not the first ones of the shard.
   CampaignFile(const std::filesystem::path& csv, const RunSettings& settings, const Shard& shard,
                std::uint64_t episodes);
-  /// Closes the .part file; removes it if it has no row.
+  /// Writes the rows that wait, without telling of errors, and closes the .part file; removes it if
+  /// it has no row.
   ~CampaignFile();
   CampaignFile(const CampaignFile&) = delete;
   CampaignFile& operator=(const CampaignFile&) = delete;
@@ -40,9 +45,12 @@ class CampaignFile {
   [[nodiscard]] const std::vector<EpisodeRow>& rows() const { return rows_; }
   /// Drops all rows but the first `count`, in the file as well. Throws InputError if that fails.
   void keep(std::size_t count);
-  /// Appends a row; the operating system has it when this returns. Throws InputError if it cannot
-  /// be written.
+  /// Appends a row. Writes it, and all that wait, if the last write was kBetweenWrites ago. Throws
+  /// InputError if that fails.
   void append(const EpisodeRow& row);
+  /// Writes the rows that wait; the operating system has them when this returns. Throws InputError
+  /// if that fails.
+  void flush();
   /// Returns the text of RESULTS.csv.
   [[nodiscard]] std::string csv() const;
   /// Removes the .part file; call it once RESULTS.csv is written. Throws InputError if that fails.
@@ -56,6 +64,8 @@ class CampaignFile {
   std::vector<std::string> coordinates_;
   std::vector<EpisodeRow> rows_;
   std::vector<std::size_t> ends_;  ///< ends of rows in the file, after the end of the header
+  std::string waiting_;            ///< lines of the last rows, to be written
+  std::chrono::steady_clock::time_point written_;
   int descriptor_ = -1;
 };
 
