@@ -46,7 +46,7 @@ class Sweeps {
     for (;;) {
       cost_to_go_.budget().poll();
       const int slot = cheapest_slot(run);
-      if (slot < 0) return {};
+      if (slot < 0 || validator_.ends_at(cost_to_go_.at(0, slot))) return {};
       const SlotPath path = best_path_from(slot, cost_to_go_, counters_.expansions, &earlier);
       earlier.add(path, cost_to_go_);
       validator_.begin();

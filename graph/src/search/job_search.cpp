@@ -33,9 +33,15 @@ struct Run {
   Run(const SearchedRun& run, const PathFirstOptions& options)
       : cost_to_go(run.cost_to_go),
         validity(run.validity),
-        validator(*run.cost_to_go, *run.validity, options) {}
+        knots(run.knots),
+        validator(*run.cost_to_go, *run.validity, with_knots(options, run.knots)) {}
+  static PathFirstOptions with_knots(PathFirstOptions options, KnotSearch* knots) {
+    options.knots = knots;
+    return options;
+  }
   CostToGo* cost_to_go;
   Validity* validity;
+  KnotSearch* knots;
   PathValidator validator;
   PathCache earlier;
   SearchCounters counters;
@@ -101,7 +107,8 @@ SearchOutcome best_alone(Run& run, const PathFirstOptions& options) {
   SearchOutcome found =
       first_valid_path(*run.cost_to_go, *run.validity, run.validator, run.earlier, run.counters);
   if (!lattice.is_closed() || found.path.empty()) return found;
-  return closed_path_first(*run.cost_to_go, *run.validity, options, run.counters);
+  return closed_path_first(*run.cost_to_go, *run.validity, Run::with_knots(options, run.knots),
+                           run.counters);
 }
 
 /// A pair of nodes of one transition.
@@ -161,9 +168,10 @@ class JobSearch {
     if (!find_runs_alone()) return;
     begin_transitions();
     find_greedy_job();
-    while (improve()) {
-    }
-    outcome_.decided = true;
+    while (!ends_at_narrow_steps() && improve()) note_narrow_steps();
+    note_narrow_steps();
+    outcome_.decided = !ends_at_narrow_steps();
+    if (!outcome_.decided) drop_job();
   }
 
  private:
@@ -181,6 +189,28 @@ class JobSearch {
   [[nodiscard]] TransitionCosts& costs(int k) { return *costs_[static_cast<std::size_t>(k)]; }
   [[nodiscard]] bool exists(int transition) const {
     return home_ || (transition > 0 && transition < last());
+  }
+
+  /// Returns whether candidate paths of a run fail again and again at steps known to be narrow.
+  [[nodiscard]] bool ends_at_narrow_steps() const {
+    return std::any_of(runs_.begin(), runs_.end(), [](const Run* run) {
+      return run->knots && run->knots->idle >= run->knots->patience;
+    });
+  }
+  /// Forgets the job that was found: it need not be the cheapest.
+  void drop_job() {
+    outcome_.cost = kUnreachable;
+    outcome_.runs.clear();
+    outcome_.paths.clear();
+    outcome_.run_costs.clear();
+    outcome_.transition_costs.clear();
+  }
+  void note_narrow_steps() {
+    if (outcome_.narrow) return;
+    outcome_.narrow = std::any_of(runs_.begin(), runs_.end(), [](const Run* run) {
+      return run->knots && !run->knots->narrow.empty();
+    });
+    if (outcome_.narrow) outcome_.narrow_from = outcome_.bound;
   }
 
   /// Finds the best valid path of each run by itself. Returns false if a stroke has none.
@@ -204,9 +234,11 @@ class JobSearch {
       if (least == kUnreachable && !outcome_.stroke_without_path) outcome_.stroke_without_path = k;
       sum += least;
     }
+    if (!outcome_.stroke_without_path) outcome_.bound_any = outcome_.bound = sum;
+    note_narrow_steps();
+    if (ends_at_narrow_steps()) return false;
     outcome_.decided = outcome_.stroke_without_path.has_value();
-    if (!outcome_.decided) outcome_.bound_any = outcome_.bound = sum;
-    return !outcome_.stroke_without_path;
+    return !outcome_.decided;
   }
 
   void begin_transitions() {
@@ -267,6 +299,7 @@ class JobSearch {
           begin = first_begin(stroke);
         }
         if (begin.slot < 0) return false;
+        if (ends_at_narrow_steps()) return false;
       } while (!find_path(stroke.runs[begin.run], begin.slot) || !validate(stroke.runs[begin.run]));
       const Run& run = stroke.runs[begin.run];
       if (exists(k)) greedy_.pairs.push_back({k, end, onward.begin});
@@ -733,6 +766,7 @@ JobOutcome search_job(std::span<const SearchedStroke> strokes, Transitions& tran
   try {
     JobSearch(strokes, transitions, home, options, outcome).run();
   } catch (const Stopped&) {
+    outcome.narrow = false;
   }
   return outcome;
 }

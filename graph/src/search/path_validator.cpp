@@ -151,8 +151,10 @@ bool PathValidator::long_edges_valid(const SlotPath& path, const Joints& joints)
       all = false;
     }
   }
+  if (all) return true;
+  if (noted.from == kUnreachable) noted.from = cost_to_go_.at(0, path.front());
   noted.idle = noted.narrow.size() > narrow_before ? 0 : noted.idle + 1;
-  return all;
+  return false;
 }
 
 bool PathValidator::bars_a_layer() {

@@ -287,10 +287,7 @@ CertificateCheck verify_certificate(const PreparedRobot& robot, const PathProble
   robot.require_prepared_for(problem);
   const Chain& chain = robot.arm().chain;
   const ToolPath path = path_within_scale(problem, chain, budget);
-  const PathProblem of_lattice =
-      certificate.stroke.empty() ? problem : on_all_layers(problem, robot.arm_class());
-  std::unique_ptr<Lattice> lattice =
-      make_lattice(chain, robot.arm_class(), path, of_lattice, budget);
+  std::unique_ptr<Lattice> lattice = make_lattice(chain, robot.arm_class(), path, problem, budget);
   for (const std::set<int>& steps : certificate.halvings) {
     std::unique_ptr<Lattice> finer;
     if (steps.empty() || *steps.begin() < 0 || *steps.rbegin() + 1 >= lattice->layers() ||
@@ -300,7 +297,7 @@ CertificateCheck verify_certificate(const PreparedRobot& robot, const PathProble
                        "lattice: allowed are those of plan --certificate");
     lattice = std::move(finer);
   }
-  require_same_layout(of_lattice, {&certificate.resolution, certificate.edges, certificate.layers},
+  require_same_layout(problem, {&certificate.resolution, certificate.edges, certificate.layers},
                       lattice->layers());
   CertificateCheck result;
   result.complete = robot.arm_class().complete();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -18,6 +19,7 @@
 #include "plan/answer.hpp"
 #include "plan/keeps_branch.hpp"
 #include "plan/search.hpp"
+#include "plan/search_on_knots.hpp"
 #include "plan/search_settings.hpp"
 #include "plan/stopwatch.hpp"
 #include "plan/told_turns.hpp"
@@ -84,15 +86,26 @@ std::vector<ArmPlane> planes_of_piece(const Stroke& stroke, const PathProblem& p
   return planes;
 }
 
+/// Returns the problem of a run as its lattice takes it: runs of a stroke in several runs have
+/// nodes at every layer, as the lattice has that finds where to lift off.
+PathProblem problem_of_lattice(const PreparedRobot& robot, const Problem& job,
+                               const StrokeRun& run) {
+  PathProblem problem = problem_of_run(job, run);
+  return job.arm().strokes[run.stroke].piece ? on_all_layers(std::move(problem), robot.arm_class())
+                                             : problem;
+}
+
 /// A run with what its search needs. Each is searched by one thread at a time.
 struct PlannedRun {
-  PlannedRun(const StrokeRun& of, const Stroke& stroke, PathProblem p, const PreparedRobot& robot,
-             const World& w, const Budget& budget)
+  PlannedRun(const StrokeRun& of, PathProblem p, const PreparedRobot& robot, const World& w,
+             const Budget& budget)
       : run(of),
-        problem(on_all_layers(std::move(p), robot.arm_class())),
+        problem(std::move(p)),
         world(&w),
         rule(w.edge_rule(robot.radii())),
-        path(path_within_scale(problem, robot.arm().chain, budget)) {
+        path(path_within_scale(problem, robot.arm().chain, budget)) {}
+  /// Makes the lattice of the run of a stroke.
+  void make_nodes(const Stroke& stroke, const PreparedRobot& robot, const Budget& budget) {
     std::vector<ArmPlane> planes = planes_of_piece(stroke, problem, robot, path, budget);
     other_planes = !planes.empty();
     if (planes.empty()) {
@@ -104,6 +117,55 @@ struct PlannedRun {
         robot.arm().chain, arm, path, problem, budget, std::move(planes), std::nullopt,
         SrsLattice::possible_circles(robot.arm().chain, arm, path, problem));
   }
+  /// Makes what answers questions about a lattice of the run.
+  void ask_about(const Lattice& asked, const PlanOptions& options, const Hooks& hooks,
+                 const Budget& budget) {
+    hooked.reset();
+    validity.emplace(asked, *world, rule, problem.limits.edges, distance_proofs_of(options), alone,
+                     1, budget);
+    hooked.emplace(asked, *validity, hooks, budget);
+  }
+  /// Halves narrow steps between the knots of the lattice as the plan of the run alone does
+  /// (search_on_knots()), and keeps what its search found out about nodes and edges.
+  void halve(const PlanOptions& options, const Budget& budget) {
+    if (!can_halve(*lattice)) return;
+    Searched first{std::move(lattice), nullptr};
+    std::map<std::string, double> time_ms;
+    const auto search = [&](Searched& level, const Searched* coarser, const Budget& time,
+                            KnotSearch* known) {
+      level.cost_to_go = make_cost_to_go(*level.lattice, pruning_of(*level.lattice), time);
+      level.cost_to_go->set_single_use();
+      if (coarser) take_from_coarser(*coarser, level, !options.hooks.cost);
+      ask_about(*level.lattice, options, options.hooks, time);
+      std::optional<EagerValidity> all;
+      if (is_eager(options)) all.emplace(*level.lattice, *hooked, true, time);
+      Counters counters;
+      Found found =
+          search_lazily(*level.cost_to_go, false, all ? static_cast<Validity&>(*all) : *hooked, {},
+                        {}, options, counters, time_ms, known);
+      counters.nodes_checked = validity->nodes_checked();
+      counters.edges_checked = validity->edges_checked();
+      add_collision(validity->counters(), counters);
+      add_counters(counters, alone_counters);
+      return found;
+    };
+    FoundOnKnots found = search_on_knots(first, search, options, budget);
+    hooked.reset();
+    validity.reset();
+    Searched& last = found.finer ? *found.finer : first;
+    knots = found.knots;
+    lattice = std::move(last.lattice);
+    if (!last.cost_to_go) return;
+    cost_to_go = make_cost_to_go(*lattice, Pruning::kNone, budget);
+    cost_to_go->set_single_use();
+    take_verdicts(*lattice, *last.cost_to_go, *lattice, *cost_to_go);
+  }
+  static void add_collision(const CollisionCounters& more, Counters& sum) {
+    sum.fcl_calls += more.fcl_calls;
+    sum.proved_free += more.proved_free;
+    sum.proved_colliding += more.proved_colliding;
+  }
+
   StrokeRun run;
   PathProblem problem;
   const World* world;
@@ -111,10 +173,15 @@ struct PlannedRun {
   ToolPath path;
   bool other_planes = false;  ///< arm angles are not measured from the path's own planes
   std::unique_ptr<Lattice> lattice;
+  /// What is said of knots; none of a lattice whose steps cannot be halved.
+  std::optional<LatticeInfo::Knots> knots;
+  /// What the search of the job says of the steps between knots.
+  KnotSearch narrow;
   /// The run's cost-to-go in the job that was searched last. What it knows of nodes and edges holds
   /// in every job.
   std::unique_ptr<CostToGo> cost_to_go;
   std::int64_t ik_nodes_before = 0, edges_before = 0;  // counts of cost_to_go before this search
+  Counters alone_counters;                             // of halve(), until they are added
   Executor alone{1};
   std::optional<CollisionValidity> validity;
   std::optional<HookedValidity> hooked;
@@ -127,12 +194,14 @@ struct PlannedRun {
 /// in. Jobs in several orders share them.
 class JobRuns {
  public:
-  /// `hooks`: the caller's own, which may tell the turns of a joint apart.
-  JobRuns(const PreparedRobot& robot, const Problem& job, const Hooks& hooks, const Budget& budget)
+  /// `options`: whose hooks may tell the turns of a joint apart.
+  JobRuns(const PreparedRobot& robot, const Problem& job, const PlanOptions& options,
+          const Budget& budget)
       : robot_(robot),
         job_(job),
+        options_(options),
         budget_(budget),
-        turns_told_apart_(robot.arm_class().srs && may_tell_turns_apart(hooks)) {}
+        turns_told_apart_(robot.arm_class().srs && may_tell_turns_apart(options.hooks)) {}
 
   /// Returns the world of the job's bodies with some limits. Runs with equal limits share it.
   const World& world_of(const Limits& limits, const PathProblem& problem) {
@@ -150,16 +219,18 @@ class JobRuns {
     std::vector<const World*> worlds;
     for (const StrokeRun& run : order) {
       if (find(run)) continue;
-      missing.emplace_back(run, problem_of_run(job_, run));
+      missing.emplace_back(run, problem_of_lattice(robot_, job_, run));
       worlds.push_back(&world_of(missing.back().second.limits, missing.back().second));
     }
     std::vector<std::shared_ptr<PlannedRun>> made(missing.size());
     executor.for_each(static_cast<int>(missing.size()), [&](int k, int) {
       const auto i = static_cast<std::size_t>(k);
-      made[i] = std::make_shared<PlannedRun>(
-          missing[i].first, job_.arm().strokes[missing[i].first.stroke],
-          std::move(missing[i].second), robot_, *worlds[i], budget_);
-      if (turns_told_apart_) made[i]->lattice = with_all_windings(std::move(made[i]->lattice));
+      PlannedRun& run =
+          *(made[i] = std::make_shared<PlannedRun>(missing[i].first, std::move(missing[i].second),
+                                                   robot_, *worlds[i], budget_));
+      run.make_nodes(job_.arm().strokes[run.run.stroke], robot_, budget_);
+      if (turns_told_apart_) run.lattice = with_all_windings(std::move(run.lattice));
+      run.halve(options_, budget_);
     });
     known_.insert(known_.end(), made.begin(), made.end());
     std::vector<std::shared_ptr<PlannedRun>> runs;
@@ -169,9 +240,10 @@ class JobRuns {
   /// Returns a run like `run` with another lattice, which is no other job's.
   [[nodiscard]] std::shared_ptr<PlannedRun> with_lattice(const PlannedRun& run,
                                                          std::unique_ptr<Lattice> lattice) const {
-    auto other = std::make_shared<PlannedRun>(run.run, job_.arm().strokes[run.run.stroke],
-                                              run.problem, robot_, *run.world, budget_);
+    auto other = std::make_shared<PlannedRun>(run.run, run.problem, robot_, *run.world, budget_);
+    other->other_planes = run.other_planes;
     other->lattice = std::move(lattice);
+    if (can_halve(*other->lattice)) other->knots.emplace();
     return other;
   }
 
@@ -183,6 +255,7 @@ class JobRuns {
   }
   const PreparedRobot& robot_;
   const Problem& job_;
+  const PlanOptions& options_;
   const Budget& budget_;
   bool turns_told_apart_;
   std::deque<std::pair<Limits, World>> worlds_;  // by their limits; references stay valid
@@ -293,12 +366,13 @@ class JobPlan {
   void describe() {
     SpecialPairs pairs;
     add_lines(robot_warnings(robot_, job_.arm()), result_.warnings);
-    add_lines(unused_key_warnings(unused_knot(robot_.arm_class(), "strokes of jobs"),
-                                  problem_of_run(job_, runs_.front()->run)),
-              result_.warnings);
     for (const auto& run : runs_) {
       add_lines(unused_key_warnings(unused_keys(chain_, robot_.arm_class()), run->problem),
                 result_.warnings);
+      if (!run->lattice->has_layers_between())
+        add_lines(unused_key_warnings(unused_knot(robot_.arm_class(), "strokes in several runs"),
+                                      problem_of_run(job_, run->run)),
+                  result_.warnings);
       add_lines(path_warnings(robot_, run->problem, run->path, *run->world), result_.warnings);
       pairs.add(*run->world);
     }
@@ -315,9 +389,9 @@ class JobPlan {
     share_circles();
     std::string turns;  // turns_note() of the first run that did not fit
     for (;;) {
-      JobTransitions transitions(robot_, *transition_world_, transition_limits_,
-                                 *runs_.front()->lattice, distance_proofs(), executor_,
-                                 options_.hooks.check, budget_);
+      const std::shared_ptr<const PlannedRun> metric = runs_.front();  // outlives transitions
+      JobTransitions transitions(robot_, *transition_world_, transition_limits_, *metric->lattice,
+                                 distance_proofs(), executor_, options_.hooks.check, budget_);
       if (home_is_barred(transitions)) return;
       const JobOutcome outcome = search(transitions);
       take_directions(outcome);
@@ -369,6 +443,7 @@ class JobPlan {
       if (!part.run) continue;
       result_.arm().runs[k].lattice.cost = part.cost;
       part.cost = cost_of_rows(*runs_[k]->lattice, paths_[k], part.rows, part.cost);
+      set_gap(part.cost, result_.arm().runs[k].lattice);
       result_.cost += part.cost - result_.arm().runs[k].lattice.cost;
       ++k;
     }
@@ -442,33 +517,98 @@ class JobPlan {
     return result_.arm().no_transition.has_value();
   }
 
+  /// Searches the runs' lattices and, as long as that is worth it, lattices whose narrow steps
+  /// between knots are halved (KnotSearch). Returns the cheapest job of all, that of the coarsest
+  /// of equal ones; directions_ are its runs. With a job it ends a while before the budget does.
   JobOutcome search(JobTransitions& transitions) {
+    JobOutcome best = search_once(transitions, budget_);
+    double least = row_cost(best);
+    auto directions_of_best = directions_;
+    for (JobOutcome last = best; is_worth_halving(last, least);) {
+      try {
+        const Budget time = best.paths.empty() ? budget_ : most_of(budget_, options_);
+        halve_narrow_steps(time);
+        last = search_once(transitions, time);
+      } catch (const Stopped&) {
+        last = {};
+      }
+      if (!last.decided && !last.narrow) {  // time is up
+        for (auto& directions : directions_of_best)
+          for (auto& run : directions)
+            if (run->knots) run->knots->halved = false;
+        if (best.paths.empty()) best = std::move(last), directions_of_best = directions_;
+        break;
+      }
+      const double cost = row_cost(last);
+      if (cost >= least && !best.paths.empty()) continue;
+      best = last;
+      least = cost;
+      directions_of_best = directions_;
+    }
+    directions_ = std::move(directions_of_best);
+    return best;
+  }
+  JobOutcome search_once(JobTransitions& transitions, const Budget& budget) {
     std::vector<SearchedStroke> searched(directions_.size());
     for_each_direction([&](const std::shared_ptr<PlannedRun>& run) {
       if (run->cost_to_go) {
         run->cost_to_go->verdicts().forget_exit_costs();
       } else {
-        run->cost_to_go = make_cost_to_go(*run->lattice, Pruning::kNone, budget_);
+        run->cost_to_go = make_cost_to_go(*run->lattice, Pruning::kNone, budget);
         run->cost_to_go->set_single_use();
       }
+      run->narrow = {};
       run->ik_nodes_before = run->cost_to_go->ik_nodes();
       run->edges_before = run->cost_to_go->edges();
-      run->hooked.reset();
-      run->validity.emplace(*run->lattice, *run->world, run->rule, run->problem.limits.edges,
-                            distance_proofs(), run->alone, 1, budget_);
-      run->hooked.emplace(*run->lattice, *run->validity, hooks_, budget_);
+      run->ask_about(*run->lattice, options_, hooks_, budget);
     });
     if (is_eager(options_)) ask_everything();
     for (std::size_t k = 0; k < directions_.size(); ++k)
       for (const auto& run : directions_[k])
         searched[k].runs.push_back(
             {run->cost_to_go.get(),
-             run->eager ? static_cast<Validity*>(&*run->eager) : &*run->hooked});
+             run->eager ? static_cast<Validity*>(&*run->eager) : &*run->hooked,
+             can_halve(*run->lattice) ? &run->narrow : nullptr});
     JobSearchOptions options;
     options.paths.batch = 8;
     options.work = work();
     options.most_cost = most_cost_;
-    return search_job(searched, transitions, job_.arm().home, options);
+    JobOutcome outcome = search_job(searched, transitions, job_.arm().home, options);
+    for_each_direction([&](const std::shared_ptr<PlannedRun>& run) { add_counters(*run); });
+    return outcome;
+  }
+  /// Returns the cost of the job's rows as far as turns of joints are told apart; kUnreachable
+  /// where none was found.
+  [[nodiscard]] double row_cost(const JobOutcome& outcome) const {
+    if (outcome.paths.empty()) return kUnreachable;
+    double cost = outcome.cost;
+    for (std::size_t k = 0; k < directions_.size(); ++k) {
+      const Lattice& lattice = *directions_[k][outcome.runs[k]]->lattice;
+      const SlotPath& path = outcome.paths[k];
+      cost += cost_of_rows(lattice, path, lattice.path_rows(path), outcome.run_costs[k]) -
+              outcome.run_costs[k];
+    }
+    return cost;
+  }
+  /// Returns whether more knots may give a job where none was found, or a cheaper one than the
+  /// best, which costs `least`.
+  [[nodiscard]] bool is_worth_halving(const JobOutcome& last, double least) const {
+    return last.narrow && (least == kUnreachable || least > kWorthHalving * last.narrow_from);
+  }
+  /// Replaces lattices by such as have their narrow steps halved. What is known of nodes and edges
+  /// stays known.
+  void halve_narrow_steps(const Budget& budget) {
+    for_each_direction([&](std::shared_ptr<PlannedRun>& run) {
+      if (run->narrow.narrow.empty()) return;
+      Searched finer{run->lattice->with_knots(run->narrow.narrow, budget), nullptr};
+      const LatticeInfo::Knots told{run->knots ? run->knots->bound : std::nullopt, {}, true};
+      finer.cost_to_go = make_cost_to_go(*finer.lattice, Pruning::kNone, budget);
+      finer.cost_to_go->set_single_use();
+      take_verdicts(*run->lattice, *run->cost_to_go, *finer.lattice, *finer.cost_to_go);
+      run = shared_->with_lattice(*run, std::move(finer.lattice));
+      run->cost_to_go = std::move(finer.cost_to_go);
+      run->knots = told;
+    });
   }
 
   /// Asks about all nodes and edges of the runs, as the eager planners do before they search.
@@ -489,7 +629,6 @@ class JobPlan {
     result_.arm().transitions.pairs += outcome.pairs;
     result_.arm().transitions.searches += outcome.searches;
     result_.arm().transitions.rounds += outcome.rounds;
-    for_each_direction([&](const std::shared_ptr<PlannedRun>& run) { add_counters(*run); });
     add_collision(transitions.counters());
     result_.bound = outcome.bound;
     result_.bound_any = outcome.bound_any;
@@ -499,6 +638,7 @@ class JobPlan {
       RunAnswer run;
       run.run = runs_[k]->run;
       run.lattice = info_of(*runs_[k]->lattice, robot_.arm_class());
+      run.lattice.knots = runs_[k]->knots;
       if (k < outcome.least_costs.size()) {
         run.least_cost = outcome.least_costs[k][run.run.reversed ? 1 : 0];
         run.status = run.least_cost == kUnreachable ? PlanStatus::kInfeasible : PlanStatus::kSolved;
@@ -525,8 +665,9 @@ class JobPlan {
       none.bodies = transitions.barred((*pair)[0], (*pair)[1]);
     }
   }
-  void add_counters(const PlannedRun& run) {
+  void add_counters(PlannedRun& run) {
     Counters& sum = result_.arm().counters;
+    swivel::add_counters(std::exchange(run.alone_counters, {}), sum);
     sum.ik_nodes += run.cost_to_go->ik_nodes() - run.ik_nodes_before;
     sum.edges += run.cost_to_go->edges() - run.edges_before;
     sum.nodes_checked += run.validity->nodes_checked();
@@ -534,9 +675,7 @@ class JobPlan {
     add_collision(run.validity->counters());
   }
   void add_collision(const CollisionCounters& more) {
-    result_.arm().counters.fcl_calls += more.fcl_calls;
-    result_.arm().counters.proved_free += more.proved_free;
-    result_.arm().counters.proved_colliding += more.proved_colliding;
+    PlannedRun::add_collision(more, result_.arm().counters);
   }
 
   /// Returns the parts of the job that was found, with joints as the lattices have them.
@@ -683,7 +822,7 @@ class OrderSearch {
         budget_(budget),
         one_branch_(one_branch),
         view_(view),
-        runs_(std::make_shared<JobRuns>(robot, job, options.hooks, budget)) {}
+        runs_(std::make_shared<JobRuns>(robot, job, options, budget)) {}
 
   Answer plan() {
     double order_ms = 0;

@@ -12,6 +12,7 @@
 #include "measure/measure_rows.hpp"
 #include "plan/answer.hpp"
 #include "plan/search.hpp"
+#include "plan/search_on_knots.hpp"
 #include "plan/search_settings.hpp"
 #include "plan/stopwatch.hpp"
 #include "plan/told_turns.hpp"
@@ -85,16 +86,6 @@ std::vector<TrajectoryRow> partial_rows(const Lattice& lattice, SlotPath path) {
   return rows;
 }
 
-/// Returns the layer of `finer` that each layer of `coarser` is.
-std::vector<int> layers_in(const Lattice& coarser, const Lattice& finer) {
-  std::vector<int> here;
-  for (int layer = 0, at = 0; layer < coarser.layers(); ++layer) {
-    while (finer.layer_of_rows(at) < coarser.layer_of_rows(layer)) ++at;
-    here.push_back(at);
-  }
-  return here;
-}
-
 bool same_pose(const Pose& a, const Pose& b) {
   return a.matrix() == b.matrix();
 }
@@ -126,10 +117,6 @@ struct Planner::Impl {
   std::shared_ptr<const PreparedRobot> last_robot;  // prepared with other attached bodies
   std::optional<World> world;                       // depends on robot, scene and limits
   bool world_is_old = true;                         // `world` only serves to make the next one from
-  struct Searched {
-    std::unique_ptr<Lattice> lattice;
-    std::unique_ptr<CostToGo> cost_to_go;
-  };
   /// What depends on the task and on the pose of the path's frame.
   struct Layout {
     /// `told_apart`: whether the lattices of S-R-S arms tell the turns of all joints apart, because
@@ -298,9 +285,6 @@ struct Planner::Impl {
          {unused_key_warnings(unused_keys(robot->arm().chain, robot->arm_class()), problem),
           path_warnings(*robot, problem, layout->path, *world)})
       result.warnings.insert(result.warnings.end(), lines.begin(), lines.end());
-    if (!layout->first.lattice->has_layers_between())
-      add_lines(unused_key_warnings(unused_knot(robot->arm_class(), "closed paths"), problem),
-                result.warnings);
     SpecialPairs pairs;
     pairs.add(*world);
     result.dropped_pairs = std::move(pairs.dropped);
@@ -368,112 +352,24 @@ struct Planner::Impl {
     /// A search of the lattice from which this one was made by halving steps.
     const Searched* coarser = nullptr;
   };
-  /// Searches a lattice and, as long as that is worth it, lattices whose narrow steps between knots
-  /// are halved (KnotSearch). Returns the cheapest answer of all, the coarsest of equal ones;
-  /// layout->last() is its lattice. With an answer it ends a while before the budget does, so that
-  /// there is time to prove it. Other parameters as of search().
+  /// Searches a lattice, and lattices with more knots where that is worth it (search_on_knots());
+  /// layout->last() is the lattice of the answer. Other parameters as of search().
   Found search_knots(Searched& searched, bool remembered, const EdgeRule& rule,
                      const PlanOptions& options, const Budget& budget, PlanResult& result,
                      const std::vector<std::vector<int>>* failed = nullptr) {
-    KnotSearch knots;
-    if (!halves(*searched.lattice))
-      return search(searched, remembered, rule, options, budget, result, {failed}, nullptr);
-    Found best = search(searched, remembered, rule, options, budget, result, {failed}, &knots);
-    LatticeInfo::Knots told;
-    std::vector<Searched> finer;
-    std::size_t level_of_best = 0;  // 0: `searched`
-    double least = row_cost(*searched.lattice, best);
-    for (bool decided = best.decided; decided && told.halved;) {
-      const Searched& last = finer.empty() ? searched : finer.back();
-      if (!worth_halving(knots, best.outcome) && !ends_between_knots(*last.lattice, best)) break;
-      Found found;
-      Searched next;
-      const KnotSearch before = std::exchange(knots, {});
-      knots.most = least;
-      const Budget time = best.outcome.path.empty() ? budget : most_of(budget, options);
-      try {
-        next.lattice = before.narrow.empty()
-                           ? with_all_layers_about(*last.lattice, *best.deepest, time)
-                           : last.lattice->with_knots(before.narrow, time);
-        found = search(next, false, rule, options, time, result, {nullptr, &last},
-                       halves(*next.lattice) ? &knots : nullptr);
-      } catch (const Stopped&) {
-        if (!next.lattice) {  // the time was up before there was one
-          best.decided = !best.outcome.path.empty();
-          told.halved = false;
-          break;
-        }
-      }
-      // What is searched no more makes room.
-      if (!finer.empty() && finer.size() != level_of_best) finer.back() = {};
-      finer.push_back(std::move(next));
-      decided = found.decided;
-      if (!decided && !best.outcome.path.empty()) {
-        told.halved = false;
-        break;
-      }
-      // Without a step to halve the answer is the best of all.
-      if (!halves(*finer.back().lattice) && !found.outcome.path.empty())
-        knots.bound = found.outcome.cost;
-      if (knots.bound == kUnreachable) knots.bound = before.bound;
-      const double cost = row_cost(*finer.back().lattice, found);
-      if (cost < least || best.outcome.path.empty()) {
-        best = std::move(found);
-        least = cost;
-        level_of_best = finer.size();
-      }
+    FoundOnKnots on_knots = search_on_knots(
+        searched,
+        [&](Searched& level, const Searched* coarser, const Budget& time, KnotSearch* knots) {
+          return search(level, remembered && coarser == nullptr, rule, options, time, result,
+                        {coarser == nullptr ? failed : nullptr, coarser}, knots);
+        },
+        options, budget);
+    if (on_knots.finer) layout->second = std::move(*on_knots.finer);
+    if (on_knots.knots) {
+      result.lattice = info_of(*layout->last().lattice, robot->arm_class());
+      result.lattice.knots = on_knots.knots;
     }
-    if (level_of_best > 0) layout->second = std::move(finer[level_of_best - 1]);
-    result.lattice = info_of(*layout->last().lattice, robot->arm_class());
-    if (knots.bound != kUnreachable && !layout->last().lattice->has_node_costs() &&
-        !options.hooks.cost)
-      told.bound = knots.bound;
-    result.lattice.knots = told;
-    return best;
-  }
-  /// Returns a budget that ends somewhat before that of the plan does.
-  [[nodiscard]] static Budget most_of(const Budget& budget, const PlanOptions& options) {
-    constexpr double kShare = 0.8;
-    std::optional<double> seconds = budget.seconds_left();
-    if (seconds) *seconds *= kShare;
-    return Budget(seconds, options.cancel, options.stop, &options.progress);
-  }
-  /// Returns the cost of a path's rows, as far as turns of joints are told apart; kUnreachable
-  /// where none was found.
-  static double row_cost(const Lattice& lattice, const Found& found) {
-    if (found.outcome.path.empty()) return kUnreachable;
-    return cost_of_rows(lattice, found.outcome.path, lattice.path_rows(found.outcome.path),
-                        found.outcome.cost);
-  }
-  /// Returns whether a lattice has no path, and layers without nodes lie beside the furthest one
-  /// that is reached: then it is not known which of them ends all paths.
-  [[nodiscard]] static bool ends_between_knots(const Lattice& lattice, const Found& found) {
-    if (!found.outcome.path.empty() || !found.deepest || *found.deepest < 0) return false;
-    const int at = *found.deepest;
-    return (at > 0 && lattice.can_halve(at - 1)) ||
-           (at + 1 < lattice.layers() && lattice.can_halve(at));
-  }
-  /// Returns a lattice that has nodes at all layers between the knots before and after a layer.
-  [[nodiscard]] static std::unique_ptr<Lattice> with_all_layers_about(const Lattice& lattice,
-                                                                      int layer,
-                                                                      const Budget& budget) {
-    const int first = lattice.layer_of_rows(std::max(0, layer - 1)),
-              last = lattice.layer_of_rows(std::min(layer + 1, lattice.layers() - 1));
-    std::unique_ptr<Lattice> finer;
-    for (;;) {
-      const Lattice& now = finer ? *finer : lattice;
-      std::set<int> steps;
-      for (int step = 0; step + 1 < now.layers(); ++step)
-        if (now.layer_of_rows(step) >= first && now.layer_of_rows(step) < last) steps.insert(step);
-      auto next = now.with_knots(steps, budget);
-      if (!next) return finer;
-      finer = std::move(next);
-    }
-  }
-  [[nodiscard]] static bool halves(const Lattice& lattice) {
-    for (int step = 0; step + 1 < lattice.layers(); ++step)
-      if (lattice.can_halve(step)) return true;
-    return false;
+    return std::move(on_knots.found);
   }
   /// Searches one lattice. `remembered`: use what earlier plans found out, and keep what this one
   /// does. `knots` as search_lazily() takes it.
@@ -505,11 +401,7 @@ struct Planner::Impl {
     cost_to_go->share(shares ? shared_with(threads) : ParallelFor());
     const bool swept = cost_to_go->restart(budget);
     if (known.failed) remove_failed_nodes(*known.failed, lattice, cost_to_go->verdicts());
-    if (known.coarser && known.coarser->cost_to_go) {
-      const std::vector<int> here = layers_in(*known.coarser->lattice, lattice);
-      cost_to_go->verdicts().take(known.coarser->cost_to_go->verdicts(), here);
-      if (!options.hooks.cost) cost_to_go->bound_by_coarser(*known.coarser->cost_to_go, here);
-    }
+    if (known.coarser) take_from_coarser(*known.coarser, searched, !options.hooks.cost);
     std::optional<World> changed;
     if (remembered) {
       memory.begin(++plans, met, *world, problem.scene);
@@ -574,8 +466,7 @@ struct Planner::Impl {
       require_same_turns(lattice, result.trajectory, problem.source);
       measure_margins(robot->arm().chain, layout->path, result.trajectory, result);
       result.cost = cost_of_rows(lattice, path, result.trajectory, result.cost);
-      if (auto& knots = result.lattice.knots; knots && knots->bound)
-        knots->gap = *knots->bound > 0 ? std::max(0.0, result.cost / *knots->bound - 1) : 0;
+      set_gap(result.cost, result.lattice);
     }
     result.time_ms["plan"] = whole.lap();
     watch.lap();
@@ -762,7 +653,7 @@ PlanView Planner::view() const {
     throw InvalidArgument(
         "there is nothing to see: allowed after a plan() that came as far as its search");
   const Impl& x = *impl_;
-  const Impl::Searched& last = x.layout->last();
+  const Searched& last = x.layout->last();
   return {*x.robot,
           x.problem,
           *last.lattice,

@@ -44,7 +44,7 @@ SlotPath proved_part(const SlotPath& path, const Verdicts& verdicts, const Valid
 }  // namespace
 
 bool worth_halving(const KnotSearch& knots, const SearchOutcome& best) {
-  return !knots.narrow.empty() && (best.path.empty() || best.cost > kWorthHalving * knots.bound);
+  return !knots.narrow.empty() && (best.path.empty() || best.cost > kWorthHalving * knots.from);
 }
 
 Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity,
@@ -75,10 +75,10 @@ Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity,
     found.outcome = path_first(cost_to_go, validity, path_first_options, searched, first);
     const bool closes = cost_to_go.lattice().is_closed() && !found.outcome.path.empty();
     if (closes) {
-      path_first_options.knots = nullptr;
       found.deepest = cost_to_go.lattice().layers() - 1;
       found.valid_path = found.outcome.path;  // an open path, should there be no closed one
       found.outcome = closed_path_first(cost_to_go, validity, path_first_options, searched);
+      if (knots && knots->idle >= knots->patience) found.outcome = {};
     }
     found.decided = true;
     if (!closes || !found.outcome.path.empty()) found.valid_path = found.outcome.path;

@@ -18,6 +18,7 @@
 #include "axes_robots.hpp"
 #include "brute_force.hpp"
 #include "diagnosis_of.hpp"
+#include "knot_problems.hpp"
 #include "planners.hpp"
 #include "random_problem.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
@@ -33,56 +34,6 @@ namespace swivel {
 namespace {
 
 using namespace test;
-
-constexpr double kNone = std::numeric_limits<double>::infinity();
-
-/// Arms whose joints turn less than once, or for ever, so that no lattice tells turns apart.
-std::vector<TestRobot> arms_of_one_turn() {
-  std::vector<TestRobot> robots;
-  for (const char* const name : {"panda_like", "gen3_like", "fetch_like"}) {
-    robots.push_back(data_robot(name));
-    robots.back().tip_link = "flange";
-  }
-  return robots;
-}
-
-/// A problem with a few knots, and layers between them. Bodies stand in the way of two thirds.
-PathProblem random_task(const TestRobot& robot, Random& random) {
-  PathProblem problem = random_problem(robot, random);
-  problem.limits.step_error.reset();
-  problem.limits.arm_slope = Limits().arm_slope;
-  problem.resolution.arc = random.uniform(0.3, 0.6);
-  problem.limits.joint_step = random.uniform(0.08, 0.4);
-  problem.limits.tool_path_error = std::exp(random.uniform(std::log(2e-4), std::log(2e-2)));
-  problem.waypoints.resize(2);
-  const double length = (problem.waypoints[1].position - problem.waypoints[0].position).norm();
-  problem.resolution.ds = length / (4 + random.below(7));
-  problem.resolution.dalpha = 0.5;
-  problem.resolution.knot = problem.resolution.ds * (2 + random.below(4));
-  return problem;
-}
-
-/// Adds small bodies that stand beside or in the arm where the best path without them is between
-/// two knots.
-void put_in_the_way(PathProblem& problem, Random& random) {
-  PlanOptions options;
-  options.planner = PlannerKind::kLazy;
-  const PlanResult free = plan(problem, options);
-  if (free.status != PlanStatus::kSolved || free.trajectory.size() < 4) return;
-  const Chain chain = PreparedRobot(problem).arm().chain;
-  for (int body = 0; body < 1 + random.below(3); ++body) {
-    const Config& q =
-        free.trajectory[static_cast<std::size_t>(
-                            1 + random.below(static_cast<int>(free.trajectory.size()) - 2))]
-            .q;
-    const auto k = static_cast<std::size_t>(2 + random.below(4));
-    SceneObject object;
-    object.name = "in_the_way_" + std::to_string(body);
-    object.shape = Sphere{random.uniform(0.005, 0.02)};
-    object.pose = random_pose(random, chain.displacements(q)[k] * chain.point[k], 0.1);
-    problem.scene.push_back(object);
-  }
-}
 
 /// What a search of one lattice says, by the definition.
 struct PlainSearch {
@@ -447,37 +398,25 @@ TEST(Knots, AStopWhileStepsAreHalvedKeepsTheAnswer) {
 
 /// Says where every layer has nodes although the problem asks for knots.
 TEST(Knots, IsWarnedOfWhereEveryLayerHasNodes) {
-  const auto told = [](const std::vector<std::string>& warnings, const std::string& what) {
-    return std::find(warnings.begin(), warnings.end(),
-                     "resolution.knot is given in vain: " + what +
-                         " have nodes at every layer of the path") != warnings.end();
+  const std::string line =
+      "resolution.knot is given in vain: strokes in several runs have nodes at every layer of the "
+      "path";
+  const auto told = [&](const Answer& answer) {
+    return std::count(answer.warnings.begin(), answer.warnings.end(), line);
   };
-  Random random(seed("Knots.Warned"));
-  PathProblem closed = random_task(arms_of_one_turn().front(), random);
-  closed.scene.clear();
-  closed.start.reset();
-  closed.waypoints.push_back(closed.waypoints.front());
-  const PlanResult open = plan(closed);
-  EXPECT_FALSE(told(open.warnings, "closed paths"));
-  EXPECT_TRUE(open.lattice.knots);
-  closed.closed = true;
-  const PlanResult around = plan(closed);
-  EXPECT_TRUE(told(around.warnings, "closed paths"));
-  EXPECT_FALSE(around.lattice.knots);
-  closed.resolution.knot = 0;
-  EXPECT_FALSE(told(plan(closed).warnings, "closed paths"));
-
   Problem job = io::load_problem(data_dir() / "problems/kr6_weld_pipe_job.yaml");
-  const Answer plain = plan_job(job);
-  EXPECT_FALSE(told(plain.warnings, "strokes of jobs"));
   for (Stroke& stroke : job.arm().strokes) stroke.resolution.knot = 0.06;
-  const Answer warned = plan_job(job);
-  EXPECT_TRUE(told(warned.warnings, "strokes of jobs"));
-  EXPECT_EQ(warned.cost, plain.cost);
+  EXPECT_EQ(told(plan_job(job)), 0);
+  job = with_lift_offs(job, {{0, 0.05, 0.05}});
+  const Answer cut = plan_job(job);
+  EXPECT_EQ(cut.status, PlanStatus::kSolved);
+  EXPECT_EQ(told(cut), 1);
+  for (const RunAnswer& run : cut.arm().runs)
+    EXPECT_EQ(run.lattice.knots.has_value(), !job.arm().strokes[run.run.stroke].piece);
 }
 
 /// With knots of 60 mm and nodes 0.06 rad apart the problems of data/ along arcs cost hardly more
-/// than their refined paths, however fine the layers are. The closed one has nodes at every layer.
+/// than their refined paths, however fine the layers are.
 TEST(Knots, PlansComeNearTheirRefinedPaths) {
   for (const char* const name : {"panda_weld_seam", "panda_polish_cover", "gen3_glue_bead",
                                  "xarm7_polish_raster", "fetch_wipe_table", "ur5e_deburr_edge",

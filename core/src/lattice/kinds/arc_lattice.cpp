@@ -94,8 +94,7 @@ ArcLattice::Data ArcLattice::build(const Chain& chain, const LockMethod& method,
   std::vector<std::vector<Point>> points;
   result.whole = &whole;
   const double knot = problem.resolution.knot.value_or(kKnotOfArcs);
-  if (knot > 0 && !(whole.closed() && !problem.start))
-    result.set_knots(knots_along(whole, {knot, kTurnOfKnots, true}));
+  if (knot > 0) result.set_knots(knots_along(whole, {knot, kTurnOfKnots, true}));
   const ToolPath& path = result.path();
   if (problem.start) require_fits(PathEnd::kFirst, problem, chain, path);
   const bool ends_given = problem.end && !path.ends_early();

@@ -88,8 +88,7 @@ OrderCosts estimate_order_costs(const PreparedRobot& robot, const Problem& job,
     const auto run = static_cast<std::size_t>(part) / 2;
     const bool reversed = run % 2 == 1, of_ends = part % 2 == 1;
     if (reversed && !job.arm().strokes[run / 2].reversible) return;
-    PathProblem problem =
-        on_all_layers(problem_of_run(job, {run / 2, reversed}), robot.arm_class());
+    PathProblem problem = problem_of_run(job, {run / 2, reversed});
     if (of_ends) {
       std::reverse(problem.waypoints.begin(), problem.waypoints.end());
       std::reverse(problem.steps.begin(), problem.steps.end());
@@ -101,7 +100,7 @@ OrderCosts estimate_order_costs(const PreparedRobot& robot, const Problem& job,
     if (!of_ends) gates[run].least = least;
   });
   budget.tell(Stage::kSearch);  // the lattices of all strokes are swept
-  const PathProblem first = on_all_layers(problem_of_run(job, {0, false}), robot.arm_class());
+  const PathProblem first = problem_of_run(job, {0, false});
   const ToolPath path = path_within_scale(first, robot.arm().chain, budget);
   const auto metric = make_lattice(robot.arm().chain, robot.arm_class(), path, first, budget);
   const std::vector<Gate> home{Gate(job.arm().home.value_or(Config::Zero()), 0)};

@@ -121,9 +121,13 @@ std::optional<JobTransitions::Chain> JobTransitions::search(World::Query& query,
   const Config to = question.from + metric_->delta(question.from, question.to);
   const auto known = chains_.find(question.transition);
   const std::size_t searched = known == chains_.end() ? 0 : known->second.size();
+  // Rows go the short way round from corner to corner, where joints are treated as circles.
+  const auto is_short = [this](const Config& a, const Config& b) {
+    return (metric_->delta(a, b) - (b - a)).cwiseAbs().maxCoeff() < 1;
+  };
   auto corners = rrt_connect(
       question.from, to, search_box(*metric_, *limits_, question.from, to),
-      [&](const Config& a, const Config& b) { return is_free(query, a, b); },
+      [&](const Config& a, const Config& b) { return is_short(a, b) && is_free(query, a, b); },
       seed_of(question.transition, searched), budget_);
   if (!corners || corners->empty()) return std::nullopt;
   Chain chain{std::move(*corners), 0};

@@ -53,6 +53,9 @@ class Transitions {
 struct SearchedRun {
   CostToGo* cost_to_go = nullptr;  ///< made with Pruning::kNone
   Validity* validity = nullptr;    ///< asked by one thread at a time
+  /// Where to note at which steps between knots edges of candidate jobs are not valid, of a lattice
+  /// that can halve them; null: nowhere. `bound` and `most` are not used.
+  KnotSearch* knots = nullptr;
 };
 
 /// A stroke as the search of a job sees it: the runs of which the job takes one, such as forwards
@@ -77,7 +80,13 @@ struct JobSearchOptions {
 
 /// A job that was found, or what is known of it.
 struct JobOutcome {
-  bool decided = false;  ///< false: stopped by the budget
+  bool decided = false;  ///< false: stopped by the budget, or at narrow steps
+  /// Whether steps between knots turned out to be narrow (SearchedRun::knots); false if stopped by
+  /// the budget. The search ends without a job where a run finds no new ones for long
+  /// (KnotSearch::patience).
+  bool narrow = false;
+  /// What a job cost at least when it was known first that steps are narrow.
+  double narrow_from = kUnreachable;
   /// Index of the first stroke of which no run has a path by itself; none if all have one.
   std::optional<std::size_t> stroke_without_path;
   /// Index of the transition for which no way was found from any end to any begin.

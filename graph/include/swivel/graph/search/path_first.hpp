@@ -74,6 +74,8 @@ struct KnotSearch {
   /// The least cost of a path of valid nodes and valid short edges, p_0's but for ties;
   /// kUnreachable: there is none. No valid path through the knots' nodes costs less.
   double bound = kUnreachable;
+  /// What the first of those paths cost that turned out to have an invalid edge.
+  double from = kUnreachable;
   /// The steps at which a p_j has an invalid edge that is not short, by layer of their beginning.
   std::set<int> narrow;
 };

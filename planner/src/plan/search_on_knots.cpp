@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plan/search_on_knots.hpp"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "plan/answer.hpp"
+
+namespace swivel {
+
+namespace {
+
+/// Returns the layer of `finer` that each layer of `coarser` is.
+std::vector<int> layers_in(const Lattice& coarser, const Lattice& finer) {
+  std::vector<int> here;
+  for (int layer = 0, at = 0; layer < coarser.layers(); ++layer) {
+    while (finer.layer_of_rows(at) < coarser.layer_of_rows(layer)) ++at;
+    here.push_back(at);
+  }
+  return here;
+}
+
+/// Returns the cost of a path's rows, as far as turns of joints are told apart; kUnreachable where
+/// none was found.
+double row_cost(const Lattice& lattice, const Found& found) {
+  if (found.outcome.path.empty()) return kUnreachable;
+  return cost_of_rows(lattice, found.outcome.path, lattice.path_rows(found.outcome.path),
+                      found.outcome.cost);
+}
+
+/// Returns whether a lattice has no path, and layers without nodes lie beside the furthest one that
+/// is reached: then it is not known which of them ends all paths.
+bool ends_between_knots(const Lattice& lattice, const Found& found) {
+  if (!found.outcome.path.empty() || !found.deepest || *found.deepest < 0) return false;
+  const int at = *found.deepest;
+  return (at > 0 && lattice.can_halve(at - 1)) ||
+         (at + 1 < lattice.layers() && lattice.can_halve(at));
+}
+
+/// Returns a lattice that has nodes at all layers between the knots before and after a layer.
+std::unique_ptr<Lattice> with_all_layers_about(const Lattice& lattice, int layer,
+                                               const Budget& budget) {
+  const int first = lattice.layer_of_rows(std::max(0, layer - 1)),
+            last = lattice.layer_of_rows(std::min(layer + 1, lattice.layers() - 1));
+  std::unique_ptr<Lattice> finer;
+  for (;;) {
+    const Lattice& now = finer ? *finer : lattice;
+    std::set<int> steps;
+    for (int step = 0; step + 1 < now.layers(); ++step)
+      if (now.layer_of_rows(step) >= first && now.layer_of_rows(step) < last) steps.insert(step);
+    auto next = now.with_knots(steps, budget);
+    if (!next) return finer;
+    finer = std::move(next);
+  }
+}
+
+/// Searches finer and finer lattices, beginning with one that can be halved.
+class Levels {
+ public:
+  Levels(Searched& first, const SearchLattice& search, const PlanOptions& options,
+         const Budget& budget)
+      : first_(first), search_(search), options_(options), budget_(budget) {}
+
+  FoundOnKnots run() {
+    best_ = search_(first_, nullptr, budget_, &knots_);
+    least_ = row_cost(*first_.lattice, best_);
+    if (best_.decided)
+      while (is_worth_halving() && halve()) {
+      }
+    FoundOnKnots on_knots;
+    if (level_of_best_ > 0) on_knots.finer = std::move(finer_[level_of_best_ - 1]);
+    const Lattice& lattice = on_knots.finer ? *on_knots.finer->lattice : *first_.lattice;
+    if (knots_.bound != kUnreachable && !lattice.has_node_costs() && !options_.hooks.cost)
+      told_.bound = knots_.bound;
+    on_knots.knots = told_;
+    on_knots.found = std::move(best_);
+    return on_knots;
+  }
+
+ private:
+  [[nodiscard]] const Searched& last() const { return finer_.empty() ? first_ : finer_.back(); }
+  [[nodiscard]] bool is_worth_halving() const {
+    return worth_halving(knots_, best_.outcome) || ends_between_knots(*last().lattice, best_);
+  }
+  /// Searches a lattice with more knots than the last one. Returns false where the search ends: in
+  /// time, or as there is no such lattice's answer.
+  bool halve() {
+    const KnotSearch before = std::exchange(knots_, {});
+    knots_.most = least_;
+    const Budget time = best_.outcome.path.empty() ? budget_ : most_of(budget_, options_);
+    Found found;
+    Searched next;
+    try {
+      next.lattice = before.narrow.empty()
+                         ? with_all_layers_about(*last().lattice, *best_.deepest, time)
+                         : last().lattice->with_knots(before.narrow, time);
+      found = search_(next, &last(), time, can_halve(*next.lattice) ? &knots_ : nullptr);
+    } catch (const Stopped&) {
+      if (!next.lattice) {  // the time was up before there was one
+        best_.decided = !best_.outcome.path.empty();
+        told_.halved = false;
+        return false;
+      }
+    }
+    // What is searched no more makes room.
+    if (!finer_.empty() && finer_.size() != level_of_best_) finer_.back() = {};
+    finer_.push_back(std::move(next));
+    if (!found.decided && !best_.outcome.path.empty()) {
+      told_.halved = false;
+      return false;
+    }
+    take(std::move(found), before.bound);
+    return best_.decided;
+  }
+  /// Keeps the answer of the last lattice if it is the cheapest so far.
+  void take(Found found, double bound_before) {
+    const Lattice& lattice = *finer_.back().lattice;
+    // Without a step to halve the answer is the best of all.
+    if (!can_halve(lattice) && !found.outcome.path.empty()) knots_.bound = found.outcome.cost;
+    if (knots_.bound == kUnreachable) knots_.bound = bound_before;
+    const double cost = row_cost(lattice, found);
+    if (cost >= least_ && !best_.outcome.path.empty()) return;
+    best_ = std::move(found);
+    least_ = cost;
+    level_of_best_ = finer_.size();
+  }
+
+  Searched& first_;
+  const SearchLattice& search_;
+  const PlanOptions& options_;
+  const Budget& budget_;
+  KnotSearch knots_;  // of the last lattice
+  Found best_;
+  double least_ = kUnreachable;    // cost of the rows of best_
+  std::size_t level_of_best_ = 0;  // 0: first_
+  std::vector<Searched> finer_;
+  LatticeInfo::Knots told_;
+};
+
+}  // namespace
+
+bool can_halve(const Lattice& lattice) {
+  for (int step = 0; step + 1 < lattice.layers(); ++step)
+    if (lattice.can_halve(step)) return true;
+  return false;
+}
+
+void take_verdicts(const Lattice& coarser, CostToGo& known, const Lattice& finer,
+                   CostToGo& cost_to_go) {
+  cost_to_go.verdicts().take(known.verdicts(), layers_in(coarser, finer));
+}
+
+void take_from_coarser(const Searched& coarser, Searched& finer, bool bounds) {
+  if (!coarser.cost_to_go) return;
+  take_verdicts(*coarser.lattice, *coarser.cost_to_go, *finer.lattice, *finer.cost_to_go);
+  if (bounds)
+    finer.cost_to_go->bound_by_coarser(*coarser.cost_to_go,
+                                       layers_in(*coarser.lattice, *finer.lattice));
+}
+
+Budget most_of(const Budget& budget, const PlanOptions& options) {
+  constexpr double kShare = 0.8;
+  std::optional<double> seconds = budget.seconds_left();
+  if (seconds) *seconds *= kShare;
+  return Budget(seconds, options.cancel, options.stop, &options.progress);
+}
+
+void set_gap(double cost, LatticeInfo& lattice) {
+  if (auto& knots = lattice.knots; knots && knots->bound)
+    knots->gap = *knots->bound > 0 ? std::max(0.0, cost / *knots->bound - 1) : 0;
+}
+
+FoundOnKnots search_on_knots(Searched& first, const SearchLattice& search,
+                             const PlanOptions& options, const Budget& budget) {
+  if (can_halve(*first.lattice)) return Levels(first, search, options, budget).run();
+  return {search(first, nullptr, budget, nullptr), std::nullopt, std::nullopt};
+}
+
+}  // namespace swivel
