@@ -237,13 +237,14 @@ class JobRuns {
     for (const StrokeRun& run : order) runs.push_back(find(run));
     return runs;
   }
-  /// Returns a run like `run` with another lattice, which is no other job's.
+  /// Returns a run like `run` with another lattice, which is no other job's: with more knots, or
+  /// with turns of joints told apart, by which no path costs less than before.
   [[nodiscard]] std::shared_ptr<PlannedRun> with_lattice(const PlannedRun& run,
                                                          std::unique_ptr<Lattice> lattice) const {
     auto other = std::make_shared<PlannedRun>(run.run, run.problem, robot_, *run.world, budget_);
     other->other_planes = run.other_planes;
     other->lattice = std::move(lattice);
-    if (can_halve(*other->lattice)) other->knots.emplace();
+    other->knots = run.knots;
     return other;
   }
 
@@ -601,13 +602,11 @@ class JobPlan {
     for_each_direction([&](std::shared_ptr<PlannedRun>& run) {
       if (run->narrow.narrow.empty()) return;
       Searched finer{run->lattice->with_knots(run->narrow.narrow, budget), nullptr};
-      const LatticeInfo::Knots told{run->knots ? run->knots->bound : std::nullopt, {}, true};
       finer.cost_to_go = make_cost_to_go(*finer.lattice, Pruning::kNone, budget);
       finer.cost_to_go->set_single_use();
       take_verdicts(*run->lattice, *run->cost_to_go, *finer.lattice, *finer.cost_to_go);
       run = shared_->with_lattice(*run, std::move(finer.lattice));
       run->cost_to_go = std::move(finer.cost_to_go);
-      run->knots = told;
     });
   }
 

@@ -8,6 +8,7 @@
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
+#include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/messages/input_error.hpp"
 
@@ -55,8 +56,11 @@ double cost_of_rows(const Lattice& lattice, const std::vector<int>& path,
     cost -= lattice.edge_cost(
         lattice.delta(*lattice.node(layer - 1, path[i - 1]), *lattice.node(layer, path[i])));
   }
-  for (std::size_t i = 1; i < rows.size(); ++i)
-    cost += lattice.edge_cost(lattice.delta(rows[i - 1].q, rows[i].q));
+  // Edges cost what the roll turns against the path's frames; rows count it from the waypoints.
+  std::vector<TrajectoryRow> counted = rows;
+  count_from_path(lattice.chain(), lattice.path_of_rows(), counted);
+  for (std::size_t i = 1; i < counted.size(); ++i)
+    cost += lattice.edge_cost(lattice.delta(counted[i - 1].q, counted[i].q));
   if (!lattice.has_node_costs()) return cost;
   for (std::size_t i = 0; i < path.size(); ++i)
     cost -= lattice.node_cost(static_cast<int>(i), path[i]);

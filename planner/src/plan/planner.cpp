@@ -333,7 +333,8 @@ struct Planner::Impl {
       }
       layout->second = std::move(wound);
       result.lattice = info_of(*layout->second->lattice, robot->arm_class());
-      found = search_knots(*layout->second, false, rule, options, budget, result, &failed);
+      found = search_knots(*layout->second, false, rule, options, budget, result,
+                           was_eager ? nullptr : &failed);
     }
   }
   /// Notes what a search asked.
@@ -377,8 +378,6 @@ struct Planner::Impl {
                const PlanOptions& options, const Budget& budget, PlanResult& result,
                const Known& known, KnotSearch* knots) {
     const Lattice& lattice = *searched.lattice;
-    // the memory keeps one clearance of an edge, not one of each row
-    remembered = remembered && !lattice.has_layers_between();
     Executor& threads = threads_of(options);
     Counters counters;
     Found found;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "swivel/core/base/timeline.hpp"
 
@@ -247,7 +248,7 @@ bool CollisionValidity::edge(const EdgeQuestion& x, Open& open, int worker, Quer
   const auto qa = exact_config(x.layer, x.a, x.qa, worker),
              qb = exact_config(x.layer + 1, x.b, x.qb, worker);
   if (!qa || !qb) return false;
-  if (lattice_->has_layers_between()) return edge_of_layers(x, *qa, *qb, open, queries.whole);
+  if (lattice_->has_layers_between()) return edge_of_layers(x, *qa, *qb, open, queries);
   const Config move = lattice_->delta(*qa, *qb);
   if (!open.only_changed &&
       ((lattice_->is_approximate() && !lattice_->row_step_allowed(x.layer, move)) ||
@@ -263,27 +264,35 @@ bool CollisionValidity::edge(const EdgeQuestion& x, Open& open, int worker, Quer
 }
 
 /// Tests every configuration between the layers as a node, and every move from one to the next as
-/// an edge.
+/// an edge. The slack of a valid edge is the least of theirs.
 bool CollisionValidity::edge_of_layers(const EdgeQuestion& x, const Config& qa, const Config& qb,
-                                       Open& open, World::Query& query) {
+                                       Open& open, Queries& queries) {
+  World::Query& query = open.only_changed ? *queries.changed : queries.whole;
+  const EdgeRule& rule = open.only_changed ? changed_rule_ : rule_;
+  double slack = std::numeric_limits<double>::infinity(), slack_of_move = -1;
   Lattice::InterpolatedEdge interpolated = lattice_->interpolate_edge(x.layer, x.a, qa, x.b, qb);
   if (interpolated.fault != Lattice::InterpolatedEdge::Fault::kNone) return false;
-  for (const Config& q : interpolated.rows)
+  for (const Config& q : interpolated.rows) {
     if (const auto pair = query.find_violating_pair_incremental(q, ClearanceRule::kNode)) {
       open.pair = *pair;
       return false;
     }
-  if (edge_mode_ == EdgeMode::kNodes) return true;
+    if (open.only_changed) slack = std::min(slack, query.slack(ClearanceRule::kNode));
+  }
   interpolated.rows.push_back(qb);
   Config from = qa;
-  for (const Config& row : interpolated.rows) {
-    const Config to = from + lattice_->delta(from, row);
-    if (const auto pair = edge_blocked(query, rule_, from, to, budget_)) {
+  for (std::size_t k = 0; edge_mode_ == EdgeMode::kContinuous && k < interpolated.rows.size();
+       ++k) {
+    const Config to = from + lattice_->delta(from, interpolated.rows[k]);
+    if (const auto pair = edge_blocked(query, rule, from, to, budget_,
+                                       open.only_changed ? &slack_of_move : nullptr)) {
       open.pair = *pair;
       return false;
     }
+    if (open.only_changed) slack = std::min(slack, slack_of_move);
     from = to;
   }
+  if (open.only_changed && std::isfinite(slack)) open.slack = slack;
   return true;
 }
 

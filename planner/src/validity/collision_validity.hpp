@@ -70,7 +70,7 @@ class CollisionValidity final : public Validity {
                                                World::Query& query) const;
   [[nodiscard]] bool edge(const EdgeQuestion& question, Open& open, int worker, Queries& queries);
   [[nodiscard]] bool edge_of_layers(const EdgeQuestion& question, const Config& qa,
-                                    const Config& qb, Open& open, World::Query& query);
+                                    const Config& qb, Open& open, Queries& queries);
   /// Returns the exact configuration of a node (Lattice::exact_config). Each worker caches recent
   /// ones, since a path's nodes are tested first and then its edges.
   [[nodiscard]] std::optional<Config> exact_config(int layer, int slot, const Config& q,
