@@ -346,6 +346,36 @@ void check_process(const Problem& job, const std::vector<Part>& parts,
   }
 }
 
+namespace {
+
+/// Returns the mean distance (m) of the tool at rows from where it would be on the straight lines
+/// between the waypoints of a run after as long a way; of rows that are finite.
+double deviation_along(const PreparedRobot& robot, const PathProblem& run,
+                       const std::vector<TrajectoryRow>& rows) {
+  const std::vector<Waypoint> waypoints = given_waypoints_in_base(run);
+  std::size_t at = 1;  // the waypoint ahead
+  double behind = 0;   // length of the lines before that to it, m
+  double way = 0, sum = 0;
+  std::optional<Vector3d> before;
+  for (const TrajectoryRow& row : rows) {
+    if (!row.q.allFinite()) continue;
+    const Vector3d tool = robot.arm().chain.tool(row.q).translation();
+    if (before) way += (tool - *before).norm();
+    before = tool;
+    const auto length = [&] {
+      return (waypoints[at].position - waypoints[at - 1].position).norm();
+    };
+    while (at + 1 < waypoints.size() && behind + length() < way) behind += length(), ++at;
+    const double share = length() > 0 ? std::min(1.0, (way - behind) / length()) : 1;
+    const Vector3d there =
+        waypoints[at - 1].position + share * (waypoints[at].position - waypoints[at - 1].position);
+    sum += (tool - there).norm();
+  }
+  return sum / static_cast<double>(std::max<std::size_t>(rows.size(), 1));
+}
+
+}  // namespace
+
 bool begins_at_last_waypoint(const PreparedRobot& robot, const Problem& job, std::size_t stroke,
                              const std::vector<TrajectoryRow>& rows) {
   if (rows.empty() || !rows.front().q.allFinite()) return false;
@@ -357,7 +387,9 @@ bool begins_at_last_waypoint(const PreparedRobot& robot, const Problem& job, std
   };
   const auto forward = distance(false), backward = distance(true);
   if (std::abs(forward.first - backward.first) > 1e-6) return backward.first < forward.first;
-  return backward.second < forward.second;
+  if (std::abs(forward.second - backward.second) > 1e-6) return backward.second < forward.second;
+  return deviation_along(robot, problem_of_run(job, {stroke, true}), rows) <
+         deviation_along(robot, problem_of_run(job, {stroke, false}), rows);
 }
 
 std::vector<StrokeRun> runs_of_motion(const PreparedRobot& robot, const Problem& job,
@@ -369,8 +401,10 @@ std::vector<StrokeRun> runs_of_motion(const PreparedRobot& robot, const Problem&
     const auto own = std::find(motion.part.begin(), motion.part.end(), part);
     // A run begins with the last row of the transition before it.
     const auto row = static_cast<std::size_t>(own - motion.part.begin());
-    const TrajectoryRow& first = motion.rows.at(row > 0 ? row - 1 : 0).row;
-    runs.push_back({strokes[k], begins_at_last_waypoint(robot, job, strokes[k], {first})});
+    std::vector<TrajectoryRow> rows{motion.rows.at(row > 0 ? row - 1 : 0).row};
+    for (std::size_t i = row; i < motion.part.size() && motion.part[i] == part; ++i)
+      rows.push_back(motion.rows[i].row);
+    runs.push_back({strokes[k], begins_at_last_waypoint(robot, job, strokes[k], rows)});
   }
   return runs;
 }
