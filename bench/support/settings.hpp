@@ -18,7 +18,8 @@ inline constexpr int kPaperSettings = 4;
 
 inline void set_resolution(PathProblem& problem, const Setting& setting) {
   problem.resolution.ds = setting.ds;
-  problem.resolution.dphi = problem.resolution.arc = problem.resolution.droll = setting.dphi;
+  problem.resolution.dphi = problem.resolution.droll = setting.dphi;
+  problem.resolution.arc = setting.dphi;
 }
 
 }  // namespace swivel::bench

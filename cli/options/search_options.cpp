@@ -28,6 +28,7 @@ void SearchOptions::add_to(CLI::App& command) {
 void LatticeOptions::add_to(CLI::App& command) {
   command.add_option("--ds", ds, "resolution along the path, m");
   command.add_option("--dphi", dphi, "resolution of the arm angle, rad");
+  command.add_option("--knot", knot, "path between the layers that have nodes, m; 0: all have");
   // A flag bound to an optional would be false, not unset, if it is not given.
   CLI::Option* const with = command.add_flag_callback(
       "--arcs", [this] { arcs = true; }, "nodes on arcs of arm angles that the grid misses, too");
@@ -58,6 +59,11 @@ void LatticeOptions::apply(Task& task) const {
     if (task.resolution.dphi > kTwoPi)
       throw InputError("--dphi: more than a turn: allowed are values up to 6.2831853");
   }
+  if (knot) {
+    if (!(*knot >= 0) || !std::isfinite(*knot))
+      throw InputError("--knot: " + shortest(*knot) + ": allowed are finite numbers from 0 on");
+    task.resolution.knot = knot;
+  }
   if (arcs) task.resolution.arcs = *arcs;
   if (!edges.empty()) {
     if (edges != "continuous" && edges != "nodes")
@@ -70,8 +76,9 @@ void LatticeOptions::require_used(const std::vector<UnusedKey>& unused) const {
   for (const UnusedKey& key : unused) {
     const std::string option = key.key == "dphi" && dphi   ? "--dphi"
                                : key.key == "arcs" && arcs ? "--arcs"
+                               : key.key == "knot" && knot ? "--knot"
                                                            : "";
-    if (!option.empty() && (key.key != "arcs" || *arcs))
+    if (!option.empty() && (key.key != "arcs" || *arcs) && (key.key != "knot" || *knot > 0))
       throw InputError(option + ": is given, but " + key.why +
                        ": allowed is no such option for this arm");
   }
@@ -106,6 +113,7 @@ std::string SearchOptions::words() const {
   };
   add(" --ds ", ds);
   add(" --dphi ", dphi);
+  add(" --knot ", knot);
   if (arcs) words += *arcs ? " --arcs" : " --no-arcs";
   if (!edges.empty()) words += " --edges " + edges;
   return words;

@@ -15,7 +15,7 @@ namespace swivel::cli {
 /// The options of `plan`, `campaign` and `check` that choose the lattice.
 struct LatticeOptions {
   std::string edges;
-  std::optional<double> ds, dphi;
+  std::optional<double> ds, dphi, knot;
   std::optional<bool> arcs;
   void add_to(CLI::App& command);
   /// Replaces values of the problem file by those that the command line gives.

@@ -66,6 +66,7 @@ io::RunSettings run_settings(const std::string& problem_file, const PathProblem&
                      {"dphi", shortest(problem.resolution.dphi)},
                      {"arcs", problem.resolution.arcs ? "true" : "false"},
                      {"edges", problem.limits.edges == EdgeMode::kNodes ? "nodes" : "continuous"}};
+  if (search.knot) settings.values.emplace_back("knot", shortest(*search.knot));
   // The problem file is the first. It is not known by its name, since that may differ or it may
   // come through a pipe; the others are known by their place relative to it.
   const fs::path folder = fs::absolute(problem_file).parent_path();

@@ -85,7 +85,7 @@ class Closed(WithFolder):
             "kr6_turntable_pipe.yaml",
             ("path:\n  frame: pipe\n", path),
             ("\n  file:", "\n      file:"),
-            ("ds: 0.005, arc: 0.175", "ds: 0.01, arc: 0.6"),
+            ("ds: 0.005", "ds: 0.01, arc: 0.6, knot: 0"),
             closed=False,
         )
         out = self.folder / "out.json"
@@ -107,11 +107,29 @@ class Closed(WithFolder):
 
     def test_a_table_that_must_turn_on_closes_no_path(self):
         problem, out = self.problem(
-            "kr6_turntable_pipe.yaml", ("ds: 0.005, arc: 0.175", "ds: 0.01, arc: 0.6")
+            "kr6_turntable_pipe.yaml", ("ds: 0.005", "ds: 0.01, arc: 0.6, knot: 0")
         ), self.folder / "out.json"
         done = run("plan", problem, "--json", out)
         self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
         self.assertEqual(json.loads(out.read_text())["diagnosis"]["cause"]["cause"], "not_closed")
+
+    def test_laps_that_run_backwards_pass_their_check(self):
+        backwards = 0
+        for closed in (True, False):
+            changes = [("closed: true, ", "closed: true, " if closed else "")] * 2
+            job = self.problem(
+                COVERS, *changes, ("name: left", "name: left, reversible: true"),
+                ("name: right", "name: right, reversible: true"), closed=False
+            )
+            for options in ((), ("--speed", "0.05"), ("--knot", "0")):
+                out, result = self.folder / "laps.csv", self.folder / "laps.json"
+                done = run("plan", job, *options, "--out", out, "--json", result)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                backwards += sum(r["reversed"] for r in json.loads(result.read_text())["runs"])
+                knots = options if "--knot" in options else ()
+                done = run("check", job, out, *knots)
+                self.assertEqual(done.returncode, 0, (options, done.stdout))
+        self.assertGreater(backwards, 3)
 
     def test_refused(self):
         kr6 = "kr6_weld_pipe.yaml"
@@ -120,7 +138,8 @@ class Closed(WithFolder):
         start = ("resolution:", "start: {joints: [0, -1, 1, 0, 1, 0, 0]}\nresolution:")
         self.assertRefused(run("plan", self.problem(kr6, start)), "path.closed", "start")
         certificate = ("--certificate", self.folder / "c.json")
-        self.assertRefused(run("plan", self.problem(kr6), *certificate), "closed")
+        no_path = self.problem(kr6, ("ds: 0.005", "ds: 0.005, knot: 0"))
+        self.assertRefused(run("plan", no_path, *certificate), "closed")
         for name in ("kr6_weld_pipe_job.yaml", "door_job.yaml"):
             job = self.problem(name, ("path: {", "path: {closed: true, "), closed=False)
             self.assertRefused(run("plan", job), "strokes[0].path.closed", "from the first")

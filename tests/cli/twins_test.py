@@ -25,11 +25,12 @@ KINDS = ("path", "job", "two arms")
 # A word for each option that takes one; "" for flags, FILE for the name of an output.
 FILE = object()
 WORDS = {
-    "--planner": "lazy", "--threads": "1", "--ds": "0.025", "--dphi": "0.25", "--arcs": "",
-    "--no-arcs": "", "--edges": "nodes", "--timeout": "60", "--refine": "", "--speed": "0.05",
-    "--turn-speed": "0.5", "--rate": "100", "--chord": "0.001", "--advise": "0.2", "--out": FILE,
-    "--certificate": FILE, "--json": FILE, "--trace": FILE, "--map": "", "--map-svg": FILE,
-    "--report": FILE, "--full-map": "", "--no-check": "", "--quiet": ""
+    "--planner": "lazy", "--threads": "1", "--ds": "0.025", "--dphi": "0.25", "--knot": "0",
+    "--arcs": "", "--no-arcs": "", "--edges": "nodes", "--timeout": "60", "--refine": "",
+    "--speed": "0.05", "--turn-speed": "0.5", "--rate": "100", "--chord": "0.001",
+    "--advise": "0.2", "--out": FILE, "--certificate": FILE, "--json": FILE, "--trace": FILE,
+    "--map": "", "--map-svg": FILE, "--report": FILE, "--full-map": "", "--no-check": "",
+    "--quiet": ""
 }
 # Options that choose what is planned; tests of placements and campaigns ask them of all kinds.
 ELSEWHERE = {

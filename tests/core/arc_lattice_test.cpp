@@ -35,6 +35,7 @@ PathProblem random_path(const Chain& chain, double length, double ds, Random& ra
   PathProblem problem;
   problem.source = "random path";
   problem.resolution.ds = ds;
+  problem.resolution.knot = 0;
   problem.limits.tool_path_error.reset();
   Pose tool = chain.tool(random_configuration(chain, random));
   problem.waypoints.push_back(waypoint_of(tool));
@@ -179,7 +180,7 @@ void check_nodes(const ArcLattice& lattice, const ArcLattice& again, const PathP
       double chord = 0;
       for (int j = 0; j < kDof; ++j)
         chord += std::pow(std::remainder(next.q[j] - point.q[j], kTwoPi), 2);
-      EXPECT_LE(std::sqrt(chord), 1.5 * problem.resolution.arc + 1e-2);
+      EXPECT_LE(std::sqrt(chord), 1.5 * *problem.resolution.arc + 1e-2);
     }
   }
 }

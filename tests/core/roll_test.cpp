@@ -171,6 +171,7 @@ PathProblem random_roll_problem(const Chain& chain, bool free, const Roll& roll,
   PathProblem problem;
   problem.source = "random path";
   problem.resolution.ds = 0.02;
+  problem.resolution.knot = 0;
   problem.limits.roll_slope = random.uniform(3, 12);
   problem.limits.tool_path_error.reset();
   Config q = random_configuration(chain, random);

@@ -250,7 +250,7 @@ class Jobs(unittest.TestCase):
             self.assertEqual([stroke.name for stroke in job.strokes], ["path"])
             (part,) = swivel.plan(job).parts
             self.assertEqual(part.stroke, "path")
-            np.testing.assert_array_equal(part.joints, swivel.plan(file).joints)
+            np.testing.assert_allclose(part.joints, swivel.plan(file).joints, rtol=0, atol=1e-14)
 
 
 class JobMotions(unittest.TestCase):

@@ -318,6 +318,7 @@ TEST(MapOfArcs, HasNoHolesBetweenNodesOfAnArc) {
     PathProblem problem =
         io::load_path_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
     problem.resolution.ds = 0.05;
+    problem.resolution.knot = 0;
     Planner arm(problem);
     (void)arm.plan({});
     const PlanView view = arm.view();

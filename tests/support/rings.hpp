@@ -81,7 +81,7 @@ inline void draw_ring_lattice(PathProblem& problem, RingNodes nodes, double leng
     return;
   }
   if (fine) resolution.arc = random.uniform(0.1, 0.2);
-  if (coarse) resolution.arc *= 1.5, resolution.dalpha = random.uniform(0.7, 1);
+  if (coarse) *resolution.arc *= 1.5, resolution.dalpha = random.uniform(0.7, 1);
   limits.step_error.reset();
   if (limits.tool_path_error) limits.tool_path_error = random.uniform(0.02, 0.1);
   if (limits.tool_angle_error) limits.tool_angle_error = random.uniform(0.1, 0.4);
@@ -133,7 +133,7 @@ inline PathProblem ring_problem(const RingArm& arm, Random& random, bool spins =
 inline PathProblem coarse_ring(const RingArm& arm, Random& random, bool spins) {
   PathProblem ring = ring_problem(arm, random, spins);
   ring.resolution.dphi = std::max(ring.resolution.dphi, 0.45);
-  ring.resolution.arc = std::max(ring.resolution.arc, 0.4);
+  ring.resolution.arc = std::max(ring.resolution.arc.value_or(0), 0.4);
   if (arm.nodes == RingNodes::kArmAngles)
     ring.limits.arm_slope = std::max(ring.limits.arm_slope, 60.0);
   if (random.coin(0.7)) ring.limits.edges = EdgeMode::kNodes;

@@ -8,6 +8,7 @@
 #include "seed.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/kinematics/srs/srs.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem/path_problem.hpp"
 #include "swivel/io/io.hpp"
 
@@ -182,12 +183,24 @@ inline Config random_config(const Chain& chain, Random& random) {
   return q;
 }
 
+/// Returns whether the arm without a roll is S-R-S.
+inline bool has_arm_angle(const TestRobot& robot) {
+  try {
+    static_cast<void>(fit_srs(arm_of(robot).chain, robot.name));
+    return true;
+  } catch (const InputError&) {  // of six joints, too
+    return false;
+  }
+}
+
+/// Returns an empty problem of the robot. Arms without an arm angle have nodes at every layer.
 inline PathProblem problem_for(const TestRobot& robot) {
   PathProblem problem;
   problem.source = robot.name;
   problem.model = robot.model;
   problem.base_link = problem.path_frame = robot.base_link;
   problem.tip_link = robot.tip_link;
+  if (!has_arm_angle(robot)) problem.resolution.knot = 0;
   return problem;
 }
 

@@ -312,7 +312,7 @@ void validate_numbers(const Field& root, const PathProblem& problem) {
   number(resolution("dalpha"), problem.resolution.dalpha, kPositive);
   number(resolution("droll"), problem.resolution.droll, kPositive);
   number(resolution("knot"), problem.resolution.knot, Range::kNonNegative);
-  number(resolution("arc"), problem.resolution.arc, kPositive);
+  if (problem.resolution.arc) number(resolution("arc"), *problem.resolution.arc, kPositive);
   const Field field = root("limits");
   const Limits& limits = problem.limits;
   number(field("clearance"), limits.clearance, kNonNegative);

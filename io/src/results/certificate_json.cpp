@@ -175,8 +175,8 @@ Json layout_json(const Resolution& resolution, EdgeMode edges,
   Json steps = {{"ds", resolution.ds},
                 {"dphi", resolution.dphi},
                 {"dalpha", resolution.dalpha},
-                {"arc", resolution.arc},
                 {"arcs", resolution.arcs}};
+  if (resolution.arc) steps["arc"] = *resolution.arc;
   if (resolution.knot.value_or(0) > 0) steps["knot"] = *resolution.knot;
   return {{"resolution", std::move(steps)},
           {"edges", edges == EdgeMode::kContinuous ? "continuous" : "nodes"},
@@ -206,8 +206,11 @@ void read_layout(const Reader& read, const Parsed& json, const std::string& key,
   resolution.ds = real("ds");
   resolution.dphi = real("dphi");
   resolution.dalpha = real("dalpha");
-  resolution.arc = real("arc");
-  if (steps.contains("knot")) resolution.knot = real("knot");
+  if (steps.contains("arc")) resolution.arc = real("arc");
+  if (steps.contains("knot"))
+    resolution.knot = real("knot");
+  else if (resolution.arc)
+    resolution.knot = 0;
   resolution.arcs = read.truth(read.at(steps, "arcs", within), within + "arcs");
   const std::string edges = read.text(read.at(json, "edges", key), key + "edges");
   if (edges != "continuous" && edges != "nodes")
@@ -370,8 +373,13 @@ InfeasibilityCertificate load_certificate(const std::filesystem::path& file) {
   if (json.contains("halved")) {
     for (const Parsed& steps : read.list(json["halved"], "halved")) {
       std::set<int>& halved = certificate.halvings.emplace_back();
-      for (const Parsed& step : read.list(steps, "halved"))
-        halved.insert(read.small(step, "halved"));
+      for (const Parsed& item : read.list(steps, "halved")) {
+        const int step = read.small(item, "halved");
+        if (!halved.empty() && step <= *halved.rbegin())
+          read.fail("halved", std::to_string(step) + " follows " + std::to_string(*halved.rbegin()),
+                    "steps of one search in ascending order, each once");
+        halved.insert(step);
+      }
     }
   }
   certificate.layers = read.small(read.at(json, "path_layers", ""), "path_layers");

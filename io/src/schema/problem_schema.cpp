@@ -190,17 +190,19 @@ Schema resolution() {
            "nodes besides at the ends of arcs of arm angles within the joint limits, and in the "
            "middles of narrow ones: "
            "no arc is missed; S-R-S arms"},
-          {"arc", number(kPositive), "rad", otherwise(d.arc),
+          {"arc", or_null(number(kPositive)), "rad",
+           in_words("0.07; 0.175 where every layer has nodes"),
            "self-motion between nodes, of arms without an arm angle; 1 m of a prismatic joint "
            "counts as 1 rad"},
           {"droll", number(kTurn), "rad", otherwise(d.droll),
            "widest step of `path.roll`, of arms of seven joints"},
           {"knot", or_null(number(kExtent)), "m",
-           in_words("0.025 with `path.roll`, of arms of seven joints; 0 of arms without an arm "
+           in_words("0.025 with `path.roll`, of arms of seven joints; 0.06 of arms without an arm "
                     "angle"),
            "about how far along the path the redundancy is chosen anew: roll and arm angle of arms "
            "of seven joints with `path.roll`, places on arcs of arms without an arm angle; between "
-           "it changes evenly, and every layer is tested; 0: at every layer"},
+           "it changes evenly, and every layer is tested; 0: at every layer, as strokes in several "
+           "runs and arms of two without an arm angle always have"},
       });
 }
 

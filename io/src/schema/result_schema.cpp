@@ -139,8 +139,10 @@ Schema lattice() {
                       "no path through nodes of these layers costs less, whatever layers between "
                       "have nodes besides; `null` where nodes have costs, or where there is none; "
                       "of arms without an arm angle with `resolution.knot`"),
-          key_of_some("knot_gap", or_null(number()),
-                      "by what share of `knot_bound` the path costs more"),
+          key_of_some(
+              "knot_gap", or_null(number()),
+              "by what share of `knot_bound` the rows of the lattice's path cost more; those of a "
+              "refined one, which goes beside the nodes, may cost less"),
           key_of_some("halved", boolean(),
                       "whether knots were added wherever that might have been worth it; `false`: "
                       "time was up before"),

@@ -17,15 +17,18 @@
 
 namespace swivel {
 
+struct ArmClass;
+
 /// The lattice for which a certificate says that it is.
 struct StatedLayout {
   const Resolution* resolution = nullptr;
   EdgeMode edges = EdgeMode::kContinuous;
   int layers = 0;
 };
-/// Throws InputError if a certificate is for another lattice than that of the problem, which has
-/// `layers` layers.
-void require_same_layout(const PathProblem& problem, const StatedLayout& stated, int layers);
+/// Throws InputError if a certificate is for another lattice than that of the problem and the arm,
+/// which has `layers` layers.
+void require_same_layout(const PathProblem& problem, const ArmClass& arm,
+                         const StatedLayout& stated, int layers);
 
 /// What regions of conflict with another arm remove of an arm. Regions are witnesses of its cut
 /// besides its own causes: witness r below count() is region r, and witness count() + k is cause k.

@@ -7,6 +7,8 @@
 #include "certificate/cut.hpp"
 #include "certificate/witnesses.hpp"
 #include "swivel/core/base/timeline.hpp"
+#include "swivel/core/kinematics/closed_form/arm_class.hpp"
+#include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/graph/search/path_first.hpp"
@@ -331,7 +333,7 @@ InfeasibilityCertificate prove_infeasible(const PlanView& view, const Budget& bu
   InfeasibilityCertificate certificate =
       find_cut(view.lattice, view.world, view.world.edge_rule(view.robot.radii()),
                own ? own->verdicts() : *view.verdicts, {}, check, budget);
-  certificate.resolution = view.problem.resolution;
+  certificate.resolution = resolution_in_effect(view.problem.resolution, view.robot.arm_class());
   certificate.edges = view.problem.limits.edges;
   certificate.windings = view.lattice.joints_with_windings();
   certificate.halvings = view.lattice.halvings();

@@ -229,7 +229,8 @@ class Verifier {
 
 }  // namespace
 
-void require_same_layout(const PathProblem& problem, const StatedLayout& stated, int layers) {
+void require_same_layout(const PathProblem& problem, const ArmClass& arm,
+                         const StatedLayout& stated, int layers) {
   const auto require = [&](bool holds, const char* what) {
     if (!holds)
       throw InputError(
@@ -237,7 +238,8 @@ void require_same_layout(const PathProblem& problem, const StatedLayout& stated,
           std::string(what) +
               " is another than the certificate's: allowed is what it was planned with");
   };
-  const Resolution &own = problem.resolution, &other = *stated.resolution;
+  const Resolution own = resolution_in_effect(problem.resolution, arm),
+                   other = resolution_in_effect(*stated.resolution, arm);
   require(own.ds == other.ds, "resolution.ds (--ds)");
   require(own.dphi == other.dphi, "resolution.dphi (--dphi)");
   require(own.dalpha == other.dalpha, "resolution.dalpha");
@@ -297,7 +299,8 @@ CertificateCheck verify_certificate(const PreparedRobot& robot, const PathProble
                        "lattice: allowed are those of plan --certificate");
     lattice = std::move(finer);
   }
-  require_same_layout(problem, {&certificate.resolution, certificate.edges, certificate.layers},
+  require_same_layout(problem, robot.arm_class(),
+                      {&certificate.resolution, certificate.edges, certificate.layers},
                       lattice->layers());
   CertificateCheck result;
   result.complete = robot.arm_class().complete();

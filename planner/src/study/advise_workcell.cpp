@@ -60,7 +60,10 @@ void change_arms(Problem& cell, const Advice& advice) {
     // a limit of both arms is the stricter one of either: the other one may be relaxed already
     const bool relaxed = advice.arm.empty() && advice.to &&
                          *place_of(advice.change).get(arm.path().limits) <= *advice.to;
-    if (!relaxed) change_arm(advice, arm, arm.path());
+    if (relaxed) continue;
+    Resolution& resolution = arm.path().resolution;
+    if (advice.change == Change::kFiner && !resolution.arc) resolution.arc = kArcOfLayers;
+    change_arm(advice, arm, arm.path());
   }
 }
 

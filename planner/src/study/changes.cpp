@@ -112,7 +112,8 @@ void change_arm(const Advice& advice, Robot& robot, Task& task) {
       task.resolution.ds /= 2;
       task.resolution.dphi /= 2;
       task.resolution.dalpha /= 2;
-      task.resolution.arc /= 2;
+      task.resolution.arc = task.resolution.arc_of_nodes() / 2;
+      if (task.resolution.knot) *task.resolution.knot /= 2;
       task.resolution.arcs = true;
       break;
     default:

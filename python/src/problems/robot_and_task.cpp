@@ -596,7 +596,7 @@ void bind_task(py::module_& m) {
       .member("dphi", &Resolution::dphi, "Of the arm angle, rad.")
       .member("dalpha", &Resolution::dalpha, "Of tool rotation, rad.")
       .member("arc", &Resolution::arc,
-              "Self-motion between nodes, of arms that have no arm angle, rad.")
+              "Self-motion between nodes, of arms that have no arm angle, rad; None: the default.")
       .member("arcs", &Resolution::arcs, "Nodes on arcs of arm angles that the grid misses.")
       .member("droll", &Resolution::droll, "Of the roll, of arms of seven joints, rad.")
       .member("knot", &Resolution::knot,

@@ -155,7 +155,8 @@ TEST(SampledAxis, IsHardlyEverCheaper) {
         static_cast<int>(std::find(names.begin(), names.end(), one.axis) - names.begin());
     SCOPED_TRACE("SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) +
                  " " + one.robot.name);
-    const double reference = SampledAxis(robot, problem, axis, problem.resolution.arc / 4).cost();
+    const double reference =
+        SampledAxis(robot, problem, axis, problem.resolution.arc_of_nodes() / 4).cost();
     const PlanResult result = plan(robot, problem, {});
     const bool has_path = result.status == PlanStatus::kSolved;
     solved += has_path;

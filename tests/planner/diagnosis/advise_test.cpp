@@ -17,8 +17,8 @@ using Outcome = Advice::Outcome;
 
 /// Halves the steps of the lattice and adds arcs to it.
 void make_finer(Resolution& resolution) {
-  for (double* step : {&resolution.ds, &resolution.dphi, &resolution.dalpha, &resolution.arc})
-    *step *= 0.5;
+  for (double* step : {&resolution.ds, &resolution.dphi, &resolution.dalpha}) *step *= 0.5;
+  resolution.arc = resolution.arc_of_nodes() / 2;
   resolution.arcs = true;
 }
 

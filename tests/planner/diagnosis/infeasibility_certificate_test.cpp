@@ -492,6 +492,26 @@ TEST(InfeasibilityCertificate, IsVerifiedByTheCheckAndByBruteForceAndForgedOnesA
   expect_tally(tally, wanted);
 }
 
+/// Steps that were halved are stated in ascending order, each once.
+TEST(InfeasibilityCertificate, StatesHalvedStepsInOrder) {
+  InfeasibilityCertificate certificate;
+  certificate.layers = 9;
+  certificate.halvings = {{0, 2}, {1, 3}};
+  std::string text = io::to_json(certificate);
+  const auto file = std::filesystem::temp_directory_path() /
+                    ("swivel_halved_test_" + std::to_string(getpid()) + ".json");
+  io::write_file(file, text);
+  EXPECT_EQ(io::load_certificate(file).halvings, certificate.halvings);
+  const std::size_t at = text.find("[1,3]");
+  ASSERT_NE(at, std::string::npos);
+  for (const char* const other : {"[3,1]", "[1,1]"}) {
+    text.replace(at, 5, other);
+    io::write_file(file, text);
+    EXPECT_THROW((void)io::load_certificate(file), InputError) << other;
+  }
+  std::filesystem::remove(file);
+}
+
 /// Where nodes lie at knots, a proof removes no edge of a step that has layers between, so that it
 /// holds whatever knots there are besides.
 TEST(InfeasibilityCertificate, OfArcsWithKnotsIsVerifiedAndForgedOnesAreRefused) {

@@ -277,7 +277,7 @@ TEST(Arms, WindingsAreToldApartWhereAPathLeavesTheLimits) {
     q[6] = random.uniform(2.4, 2.9);
     to[6] = q[6] + 1.2;
     problem.waypoints = {waypoint_of(chain.tool(q)), waypoint_of(chain.tool(to))};
-    problem.resolution = {.ds = 0.02, .dphi = 0.3, .dalpha = 0.3, .arc = 0.4};
+    problem.resolution = {.ds = 0.02, .dphi = 0.3, .dalpha = 0.3, .arc = 0.4, .knot = 0};
     const std::string what =
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     Planner planner(problem);
@@ -402,7 +402,7 @@ RollCostCase random_roll_cost_case(const char* name, const Roll& roll, Random& r
   if (problem.roll->lower > 0) problem.start.reset();  // it stands unturned
   problem.waypoints.resize(2 + static_cast<std::size_t>(random.below(2)));
   problem.resolution = {
-      .ds = random.uniform(0.02, 0.04), .dalpha = 0.3, .arc = random.uniform(0.4, 0.6)};
+      .ds = random.uniform(0.02, 0.04), .dalpha = 0.3, .arc = random.uniform(0.4, 0.6), .knot = 0};
   problem.limits.joint_step = 1;
   problem.limits.tool_path_error = 0.05;
   problem.limits.roll_slope = random.uniform(10, 30);

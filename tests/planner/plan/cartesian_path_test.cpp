@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "robots.hpp"
+#include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/planner/robot/motion_defaults.hpp"
@@ -98,8 +99,9 @@ TEST(CartesianPath, FractionIsOneWhereThereIsAPlanAndElseThePartIsValid) {
         for (std::size_t i = 0; i < path.rows.size(); ++i)
           ASSERT_EQ(path.rows[i].q, plan.trajectory[i].q) << name << ' ' << k << ' ' << i;
       } else {
-        const int reached = plan.diagnosis->reached_layer.value_or(0);
-        ASSERT_EQ(path.fraction, static_cast<double>(reached) / (plan.lattice.layers - 1));
+        const std::size_t reached = std::max<std::size_t>(plan.partial.size(), 1) - 1;
+        const int steps = problem_path(problem_of(robot, chain, query), chain).size() - 1;
+        ASSERT_EQ(path.fraction, static_cast<double>(reached) / steps) << name << ' ' << k;
         ASSERT_EQ(path.rows.size(), plan.partial.size());
         ++(path.rows.size() < 2 ? nothing : part);
       }

@@ -475,7 +475,7 @@ TEST(End, StrokesOfAJobEndThere) {
     Problem elsewhere = job;
     for (Stroke& stroke : elsewhere.arm().strokes) {
       stroke.resolution.dphi *= 1.3;
-      stroke.resolution.arc *= 0.7;
+      stroke.resolution.arc = 0.7 * stroke.resolution.arc_of_nodes();
     }
     const Answer first = plan_job(robot, elsewhere);
     ASSERT_EQ(first.status, PlanStatus::kSolved) << name;

@@ -70,6 +70,7 @@ PathProblem free_problem(const TestRobot& robot, Random& random) {
   problem.scene.clear();
   problem.smooth.reset();
   problem.resolution.dphi = 0.05;
+  problem.resolution.knot = 0;
   problem.resolution.arc = 0.1;  // about as far from node to node as that
   return problem;
 }
@@ -99,7 +100,7 @@ void compare_with_grid(PathProblem problem, const std::string& what, Counts& cou
   counts.cheaper += arcs.cost < grid.cost;
   if (arcs.cost > 1.01 * grid.cost) {
     ++counts.finer;
-    problem.resolution.arc /= 2;
+    *problem.resolution.arc /= 2;
     EXPECT_LE(least(make_lattice(chain, as_others, path, problem)).cost, 1.01 * grid.cost) << what;
   }
   for (std::size_t i = 0; i < arcs.joints.size(); ++i)

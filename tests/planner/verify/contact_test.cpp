@@ -40,6 +40,7 @@ PathProblem polishing(double deep, std::optional<double> allowed = {}) {
   problem.waypoints[1].position.y() = 0;
   problem.resolution.ds = 0.03;
   problem.resolution.arc = 0.4;
+  problem.resolution.knot = 0;
   for (Waypoint& waypoint : problem.waypoints)
     waypoint.position.z() -= deep + 0.003;  // the disc ends 3 mm above the tool
   for (SceneObject& object : problem.scene)

@@ -139,8 +139,9 @@ Problem as_advised(Problem cell, const Advice& advice, double stricter = 0) {
         break;
       case Change::kFiner:
         for (double* step : {&arm.path().resolution.ds, &arm.path().resolution.dphi,
-                             &arm.path().resolution.dalpha, &arm.path().resolution.arc})
+                             &arm.path().resolution.dalpha})
           *step /= 2;
+        arm.path().resolution.arc = kArcOfLayers / 2;
         arm.path().resolution.arcs = true;
         break;
       case Change::kClearance:

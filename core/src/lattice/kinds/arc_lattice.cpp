@@ -93,7 +93,7 @@ ArcLattice::Data ArcLattice::build(const Chain& chain, const LockMethod& method,
   Data result;
   std::vector<std::vector<Point>> points;
   result.whole = &whole;
-  const double knot = problem.resolution.knot.value_or(kKnotOfArcs);
+  const double knot = problem.resolution.knot_of_arcs();
   if (knot > 0) result.set_knots(knots_along(whole, {knot, kTurnOfKnots, true}));
   const ToolPath& path = result.path();
   if (problem.start) require_fits(PathEnd::kFirst, problem, chain, path);

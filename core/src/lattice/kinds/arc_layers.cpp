@@ -454,7 +454,7 @@ void add_at_asked_rolls(const Chain& chain, const PathProblem& problem, const Se
   const Roll& window = layer.window;
   const JointLimit& limit = chain.limit.back();
   const auto add = [&](double roll) {
-    add_at_roll(roll, motion, layer.tool, arc, number, problem.resolution.arc, images);
+    add_at_roll(roll, motion, layer.tool, arc, number, problem.resolution.arc_of_nodes(), images);
   };
   if (problem.cost.roll > 0) add(0);
   if (window.lower > limit.lower) add(window.lower);
@@ -478,7 +478,7 @@ std::vector<int> numbers_below(std::size_t n) {
 ArcLayer ArcLayerMaker::make(const PathLayer& here, const CarriedNodes& before,
                              std::vector<Point>* last) const {
   ArcsOfLayer found = arcs_of(motion_, method_, here.tool, before, least_);
-  Layer layer(motion_, here.tool, problem_.resolution.arc);
+  Layer layer(motion_, here.tool, problem_.resolution.arc_of_nodes());
   for (std::size_t k = 0; k < found.arcs.size(); ++k) {
     if (chain_.roll)
       add_at_asked_rolls(chain_, problem_, motion_, here, found.arcs[k], static_cast<int>(k),

@@ -35,6 +35,16 @@ PathProblem on_all_layers(PathProblem problem, const ArmClass& arm) {
   return problem;
 }
 
+Resolution resolution_in_effect(Resolution resolution, const ArmClass& arm) {
+  if (arm.srs) {
+    resolution.arc.reset();
+  } else {
+    resolution.arc = resolution.arc_of_nodes();
+    resolution.knot = resolution.knot_of_arcs();
+  }
+  return resolution;
+}
+
 std::optional<double> last_joint_at_rest(const Chain& chain, const ArmClass& arm,
                                          const PathProblem& problem) {
   // If the roll has a cost, turning joint 7 may be cheaper than resting it.

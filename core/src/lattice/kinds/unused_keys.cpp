@@ -13,7 +13,7 @@ bool is_given(const UnusedKey& key, const Task& task) {
   static const Limits limits;
   if (key.key == "dphi") return task.resolution.dphi != resolution.dphi;
   if (key.key == "arcs") return task.resolution.arcs != resolution.arcs;
-  if (key.key == "arc") return task.resolution.arc != resolution.arc;
+  if (key.key == "arc") return task.resolution.arc.has_value();
   if (key.key == "droll") return task.resolution.droll != resolution.droll;
   if (key.key == "knot") return task.resolution.knot.value_or(0) > 0;
   if (key.key == "roll_slope") return task.limits.roll_slope != limits.roll_slope;

@@ -5,6 +5,8 @@
 #include "certificate/cut.hpp"
 #include "plan/search.hpp"
 #include "swivel/core/base/timeline.hpp"
+#include "swivel/core/kinematics/closed_form/arm_class.hpp"
+#include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/graph/search/pair_search.hpp"
 #include "swivel/planner/workcell/plan_workcell.hpp"
@@ -94,7 +96,8 @@ class WorkcellProof {
     WorkcellCertificate certificate;
     for (std::size_t k = 0; k < 2; ++k) {
       certificate.windings[k] = arms_[k]->lattice->joints_with_windings();
-      certificate.resolution[k] = arms_[k]->problem.resolution;
+      certificate.resolution[k] =
+          resolution_in_effect(arms_[k]->problem.resolution, arms_[k]->robot.arm_class());
       certificate.edges[k] = arms_[k]->problem.limits.edges;
     }
     certificate.layers = arms_[0]->lattice->layers();

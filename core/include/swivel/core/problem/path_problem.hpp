@@ -134,20 +134,31 @@ struct Limits {
 
 /// What Resolution::knot is unless it is set, m: of arms without an arm angle, and of S-R-S arms
 /// whose roll is free.
-inline constexpr double kKnotOfArcs = 0, kKnotOfRolls = 0.025;
+inline constexpr double kKnotOfArcs = 0.06, kKnotOfRolls = 0.025;
+/// What Resolution::arc is unless it is set, rad (m of a slide): with nodes at knots, and with
+/// nodes at every layer.
+inline constexpr double kArcOfKnots = 0.07, kArcOfLayers = 0.175;
 
 /// How fine the lattice is.
 struct Resolution {
   double ds = 0.005;    ///< largest distance between layers, m
   double dphi = 0.05;   ///< largest step of the arm angle, rad
   double dalpha = 0.1;  ///< largest tool rotation between layers, rad
-  double arc = 0.175;   ///< self-motion between nodes, rad (m of a slide), without an arm angle
+  /// Self-motion between nodes, rad (m of a slide), of arms without an arm angle; unset:
+  /// kArcOfKnots, kArcOfLayers.
+  std::optional<double> arc;
   /// For S-R-S arms: adds nodes on the arcs of allowed arm angles that lie between grid angles.
   bool arcs = false;
   double droll = 0.1;  ///< largest step of the roll of seven-joint arms, rad
   /// Length of path between the layers that have nodes, m: of arms without an arm angle, and of
   /// S-R-S arms whose roll is free. 0: every layer has; unset: kKnotOfArcs, kKnotOfRolls.
   std::optional<double> knot;
+  /// Returns the length of path between knots of arms without an arm angle, m, as it is in effect.
+  [[nodiscard]] double knot_of_arcs() const { return knot.value_or(kKnotOfArcs); }
+  /// Returns the self-motion between nodes of such arms, as it is in effect.
+  [[nodiscard]] double arc_of_nodes() const {
+    return arc.value_or(knot_of_arcs() > 0 ? kArcOfKnots : kArcOfLayers);
+  }
   bool operator==(const Resolution&) const = default;
 };
 

@@ -24,6 +24,9 @@ struct ArmClass;
 /// Returns a problem whose lattice has nodes at every layer, of an arm without an arm angle: one of
 /// a stroke or of an arm of two, whose search cannot halve steps between knots.
 [[nodiscard]] PathProblem on_all_layers(PathProblem problem, const ArmClass& arm);
+/// Returns the resolution of an arm's lattice for a record: `arc` and `knot` as they are in effect
+/// without an arm angle, and no `arc` with one.
+[[nodiscard]] Resolution resolution_in_effect(Resolution resolution, const ArmClass& arm);
 
 /// Returns where joint 7 may rest, rad, if the tool of an S-R-S arm may turn freely about the axis
 /// of that joint: as far from its limits as possible. The other six joints alone then put the tool
