@@ -348,28 +348,49 @@ void check_process(const Problem& job, const std::vector<Part>& parts,
 
 namespace {
 
+/// A place of the tool and its z axis.
+struct ToolAxis {
+  Vector3d position, axis;
+  /// Returns how far another one is, m. A turn of the axis by a radian counts as 50 mm.
+  [[nodiscard]] double distance(const ToolAxis& other) const {
+    constexpr double kPerRadian = 0.05;  // m
+    const double angle = std::atan2(axis.cross(other.axis).norm(), axis.dot(other.axis));
+    return (other.position - position).norm() + kPerRadian * angle;
+  }
+  /// Returns what lies between this and another one: straight, the axis in its plane.
+  [[nodiscard]] ToolAxis towards(const ToolAxis& other, double share) const {
+    const Quaterniond turn = Quaterniond::FromTwoVectors(axis, other.axis);
+    return {position + share * (other.position - position),
+            Quaterniond::Identity().slerp(share, turn) * axis};
+  }
+};
+
 /// Returns the mean distance (m) of the tool at rows from where it would be on the straight lines
-/// between the waypoints of a run after as long a way; of rows that are finite.
+/// between the waypoints of a run after as long a way (ToolAxis::distance); of rows that are
+/// finite.
 double deviation_along(const PreparedRobot& robot, const PathProblem& run,
                        const std::vector<TrajectoryRow>& rows) {
-  const std::vector<Waypoint> waypoints = given_waypoints_in_base(run);
+  std::vector<ToolAxis> waypoints;
+  for (const Waypoint& waypoint : given_waypoints_in_base(run))
+    waypoints.push_back({waypoint.position, waypoint.orientation * Vector3d::UnitZ()});
   std::size_t at = 1;  // the waypoint ahead
   double behind = 0;   // length of the lines before that to it, m
   double way = 0, sum = 0;
-  std::optional<Vector3d> before;
+  std::optional<ToolAxis> before;
   for (const TrajectoryRow& row : rows) {
     if (!row.q.allFinite()) continue;
-    const Vector3d tool = robot.arm().chain.tool(row.q).translation();
-    if (before) way += (tool - *before).norm();
+    const Pose pose = robot.arm().chain.tool(row.q);
+    const ToolAxis tool{pose.translation(), pose.linear().col(2)};
+    if (before) way += before->distance(tool);
     before = tool;
-    const auto length = [&] {
-      return (waypoints[at].position - waypoints[at - 1].position).norm();
-    };
-    while (at + 1 < waypoints.size() && behind + length() < way) behind += length(), ++at;
-    const double share = length() > 0 ? std::min(1.0, (way - behind) / length()) : 1;
-    const Vector3d there =
-        waypoints[at - 1].position + share * (waypoints[at].position - waypoints[at - 1].position);
-    sum += (tool - there).norm();
+    double length = waypoints[at - 1].distance(waypoints[at]);
+    while (at + 1 < waypoints.size() && behind + length < way) {
+      behind += length;
+      ++at;
+      length = waypoints[at - 1].distance(waypoints[at]);
+    }
+    const double share = length > 0 ? std::min(1.0, (way - behind) / length) : 1;
+    sum += waypoints[at - 1].towards(waypoints[at], share).distance(tool);
   }
   return sum / static_cast<double>(std::max<std::size_t>(rows.size(), 1));
 }
