@@ -409,6 +409,7 @@ bool begins_at_last_waypoint(const PreparedRobot& robot, const Problem& job, std
   const auto forward = distance(false), backward = distance(true);
   if (std::abs(forward.first - backward.first) > 1e-6) return backward.first < forward.first;
   if (std::abs(forward.second - backward.second) > 1e-6) return backward.second < forward.second;
+  if (!job.arm().strokes[stroke].reversible) return false;
   return deviation_along(robot, problem_of_run(job, {stroke, true}), rows) <
          deviation_along(robot, problem_of_run(job, {stroke, false}), rows);
 }

@@ -45,8 +45,8 @@ void check_process(const Problem& job, const std::vector<Part>& parts,
                    const std::vector<std::vector<bool>>& process, AnswerCheck& result);
 
 /// Returns true if the tool begins at rows.front() nearer to the stroke's last waypoint than to its
-/// first, by position and then by angle; where both are one pose, if the rows follow the waypoints
-/// from the last to the first more nearly than from the first to the last.
+/// first, by position and then by angle; where both are one pose, if the stroke is reversible and
+/// the rows follow the waypoints from the last to the first more nearly.
 [[nodiscard]] bool begins_at_last_waypoint(const PreparedRobot& robot, const Problem& job,
                                            std::size_t stroke,
                                            const std::vector<TrajectoryRow>& rows);
