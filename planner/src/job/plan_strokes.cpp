@@ -143,9 +143,7 @@ struct PlannedRun {
       Found found =
           search_lazily(*level.cost_to_go, false, all ? static_cast<Validity&>(*all) : *hooked, {},
                         {}, options, counters, time_ms, known);
-      counters.nodes_checked = validity->nodes_checked();
-      counters.edges_checked = validity->edges_checked();
-      add_collision(validity->counters(), counters);
+      add_counters(*validity, counters);
       add_counters(counters, alone_counters);
       return found;
     };
@@ -158,12 +156,7 @@ struct PlannedRun {
     if (!last.cost_to_go) return;
     cost_to_go = make_cost_to_go(*lattice, Pruning::kNone, budget);
     cost_to_go->set_single_use();
-    take_verdicts(*lattice, *last.cost_to_go, *lattice, *cost_to_go);
-  }
-  static void add_collision(const CollisionCounters& more, Counters& sum) {
-    sum.fcl_calls += more.fcl_calls;
-    sum.proved_free += more.proved_free;
-    sum.proved_colliding += more.proved_colliding;
+    take_verdicts(*last.cost_to_go, *cost_to_go);
   }
 
   StrokeRun run;
@@ -601,12 +594,11 @@ class JobPlan {
   void halve_narrow_steps(const Budget& budget) {
     for_each_direction([&](std::shared_ptr<PlannedRun>& run) {
       if (run->narrow.narrow.empty()) return;
-      Searched finer{run->lattice->with_knots(run->narrow.narrow, budget), nullptr};
-      finer.cost_to_go = make_cost_to_go(*finer.lattice, Pruning::kNone, budget);
-      finer.cost_to_go->set_single_use();
-      take_verdicts(*run->lattice, *run->cost_to_go, *finer.lattice, *finer.cost_to_go);
-      run = shared_->with_lattice(*run, std::move(finer.lattice));
-      run->cost_to_go = std::move(finer.cost_to_go);
+      const std::shared_ptr<PlannedRun> before = std::exchange(
+          run, shared_->with_lattice(*run, run->lattice->with_knots(run->narrow.narrow, budget)));
+      run->cost_to_go = make_cost_to_go(*run->lattice, Pruning::kNone, budget);
+      run->cost_to_go->set_single_use();
+      take_verdicts(*before->cost_to_go, *run->cost_to_go);
     });
   }
 
@@ -628,7 +620,7 @@ class JobPlan {
     result_.arm().transitions.pairs += outcome.pairs;
     result_.arm().transitions.searches += outcome.searches;
     result_.arm().transitions.rounds += outcome.rounds;
-    add_collision(transitions.counters());
+    swivel::add_counters(transitions.counters(), result_.arm().counters);
     result_.bound = outcome.bound;
     result_.bound_any = outcome.bound_any;
     result_.cost = result_.lattice_cost = outcome.paths.empty() ? 0 : outcome.cost;
@@ -669,12 +661,7 @@ class JobPlan {
     swivel::add_counters(std::exchange(run.alone_counters, {}), sum);
     sum.ik_nodes += run.cost_to_go->ik_nodes() - run.ik_nodes_before;
     sum.edges += run.cost_to_go->edges() - run.edges_before;
-    sum.nodes_checked += run.validity->nodes_checked();
-    sum.edges_checked += run.validity->edges_checked();
-    add_collision(run.validity->counters());
-  }
-  void add_collision(const CollisionCounters& more) {
-    PlannedRun::add_collision(more, result_.arm().counters);
+    swivel::add_counters(*run.validity, sum);
   }
 
   /// Returns the parts of the job that was found, with joints as the lattices have them.

@@ -337,15 +337,6 @@ struct Planner::Impl {
                            was_eager ? nullptr : &failed);
     }
   }
-  /// Notes what a search asked.
-  static void count(const CollisionValidity& validity, Counters& counters) {
-    counters.nodes_checked = validity.nodes_checked();
-    counters.edges_checked = validity.edges_checked();
-    const CollisionCounters collision = validity.counters();
-    counters.fcl_calls = collision.fcl_calls;
-    counters.proved_free = collision.proved_free;
-    counters.proved_colliding = collision.proved_colliding;
-  }
   /// What a search begins with, of a search before it.
   struct Known {
     /// What add_failed_nodes() found before turns were told apart.
@@ -387,7 +378,7 @@ struct Planner::Impl {
                                  distance_proofs_of(options), threads, 0, budget);
       HookedValidity hooked(lattice, validity, options.hooks, budget);
       found = search_eagerly(lattice, hooked, options, budget, counters);
-      count(validity, counters);
+      add_counters(validity, counters);
       add_counters(counters, result.counters);
       return found;
     }
@@ -418,7 +409,7 @@ struct Planner::Impl {
     found = search_lazily(*cost_to_go, swept, eager ? static_cast<Validity&>(*eager) : hooked,
                           remembered ? memory.failures() : PriorFailures{}, asked_before, options,
                           counters, result.time_ms, knots);
-    count(validity, counters);
+    add_counters(validity, counters);
     add_counters(counters, result.counters);
     return found;
   }

@@ -4,8 +4,21 @@
 #include "plan/stopwatch.hpp"
 #include "swivel/graph/eager/eager.hpp"
 #include "swivel/graph/search/closed_path.hpp"
+#include "validity/collision_validity.hpp"
 
 namespace swivel {
+
+void add_counters(const CollisionCounters& more, Counters& sum) {
+  sum.fcl_calls += more.fcl_calls;
+  sum.proved_free += more.proved_free;
+  sum.proved_colliding += more.proved_colliding;
+}
+
+void add_counters(const CollisionValidity& validity, Counters& sum) {
+  sum.nodes_checked += validity.nodes_checked();
+  sum.edges_checked += validity.edges_checked();
+  add_counters(validity.counters(), sum);
+}
 
 Found search_eagerly(const Lattice& lattice, Validity& validity, const PlanOptions& options,
                      const Budget& budget, Counters& counters) {

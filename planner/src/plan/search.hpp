@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "swivel/collision/proofs/verdict.hpp"
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/lattice/lattice.hpp"
 #include "swivel/graph/cost_to_go/cost_to_go.hpp"
@@ -13,6 +14,8 @@
 #include "swivel/planner/plan/plan_options.hpp"
 
 namespace swivel {
+
+class CollisionValidity;
 
 /// Returns true if the lattice is so large that lower bounds, sweeps and the work between two
 /// batches of questions are worth sharing between threads.
@@ -41,6 +44,10 @@ inline void add_counters(const Counters& more, Counters& sum) {
   sum.expansions += more.expansions;
   sum.iterations += more.iterations;
 }
+/// Adds queries for collisions.
+void add_counters(const CollisionCounters& more, Counters& sum);
+/// Adds what was asked about nodes and edges, and the queries for that.
+void add_counters(const CollisionValidity& validity, Counters& sum);
 
 /// The result of a search by any of the planners.
 struct Found {

@@ -147,14 +147,13 @@ bool can_halve(const Lattice& lattice) {
   return false;
 }
 
-void take_verdicts(const Lattice& coarser, CostToGo& known, const Lattice& finer,
-                   CostToGo& cost_to_go) {
-  cost_to_go.verdicts().take(known.verdicts(), layers_in(coarser, finer));
+void take_verdicts(CostToGo& coarser, CostToGo& finer) {
+  finer.verdicts().take(coarser.verdicts(), layers_in(coarser.lattice(), finer.lattice()));
 }
 
 void take_from_coarser(const Searched& coarser, Searched& finer, bool bounds) {
   if (!coarser.cost_to_go) return;
-  take_verdicts(*coarser.lattice, *coarser.cost_to_go, *finer.lattice, *finer.cost_to_go);
+  take_verdicts(*coarser.cost_to_go, *finer.cost_to_go);
   if (bounds)
     finer.cost_to_go->bound_by_coarser(*coarser.cost_to_go,
                                        layers_in(*coarser.lattice, *finer.lattice));

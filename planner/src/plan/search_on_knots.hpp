@@ -46,8 +46,7 @@ struct FoundOnKnots {
 
 /// Takes over what is known of the nodes and edges of a lattice into the cost-to-go of one with
 /// more knots, or of the same. A sweep must follow.
-void take_verdicts(const Lattice& coarser, CostToGo& known, const Lattice& finer,
-                   CostToGo& cost_to_go);
+void take_verdicts(CostToGo& coarser, CostToGo& finer);
 /// Takes over what is known of the nodes and edges of a coarser lattice, and lower bounds if
 /// `bounds`: if nodes cost nothing by hooks. A sweep must follow.
 void take_from_coarser(const Searched& coarser, Searched& finer, bool bounds);

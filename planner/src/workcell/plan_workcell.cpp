@@ -275,14 +275,7 @@ class WorkcellPlan {
     Counters& sum = result.counters;
     sum.ik_nodes += arm.cost_to_go->ik_nodes();
     sum.edges += arm.cost_to_go->edges();
-    if (arm.validity) {
-      sum.nodes_checked += arm.validity->nodes_checked();
-      sum.edges_checked += arm.validity->edges_checked();
-      const CollisionCounters collision = arm.validity->counters();
-      sum.fcl_calls += collision.fcl_calls;
-      sum.proved_free += collision.proved_free;
-      sum.proved_colliding += collision.proved_colliding;
-    }
+    if (arm.validity) add_counters(*arm.validity, sum);
     result.run().lattice = info_of(*arm.lattice, arm.robot.arm_class());
   }
   /// Notes where and by which bodies the arms bar each other on their cheapest paths, which meet in
