@@ -65,7 +65,7 @@ class PathValidator {
   void begin() {
     if (first_cost_ == kUnreachable) first_cost_ = cost_to_go_.best();
   }
-  /// Returns whether the search ends before paths of a cost (KnotSearch::band, most).
+  /// Returns whether the search ends before paths of a cost (KnotSearch::patience, most).
   [[nodiscard]] bool ends_at(double cost) const {
     const KnotSearch* const knots = options_.knots;
     return knots && (cost >= knots->most || knots->idle >= knots->patience);

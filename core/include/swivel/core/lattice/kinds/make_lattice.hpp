@@ -21,8 +21,8 @@ struct ArmClass;
                                                     const PathProblem& problem,
                                                     const Budget& budget = {});
 
-/// Returns a problem whose lattice has nodes at every layer, of an arm without an arm angle: one of
-/// a stroke or of an arm of two, whose search cannot halve steps between knots.
+/// Returns a problem whose lattice has nodes at every layer, of an arm without an arm angle: that
+/// of a stroke in several runs or of an arm of two, whose search cannot halve steps between knots.
 [[nodiscard]] PathProblem on_all_layers(PathProblem problem, const ArmClass& arm);
 /// Returns the resolution of an arm's lattice for a record: `arc` and `knot` as they are in effect
 /// without an arm angle, and no `arc` with one.
