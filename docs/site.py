@@ -18,7 +18,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 # hold.
 COPIED = [
     "*.md", "docs/*.md", "docs/guide/*.md", "docs/decisions/*.md", "docs/measurements/*.md",
-    "docs/figures/*", "examples/**/*", "data/README.md", "data/problems/*", "cmake/packages.txt"
+    "docs/figures/*", "examples/**/*", "data/README.md", "data/peers/README.md", "data/problems/*",
+    "cmake/packages.txt"
 ]
 MADE = {"python.md", "cpp/index.html"}  # by python_reference() and Doxygen
 CODE = re.compile(r"^(```|~~~).*?^\1$|(?<!`)(`+)(?!`).+?(?<!`)\2(?!`)", re.DOTALL | re.MULTILINE)
