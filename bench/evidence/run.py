@@ -9,12 +9,13 @@ import subprocess
 import sys
 import time
 
+import peers as public_problems
 import planner_table
-import plots
 import tables
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BENCH = ROOT / "build/release/bench"
+PROGRAM = ROOT / "build/release/cli/swivel"
 
 
 def run(command, log, **environment):
@@ -98,11 +99,16 @@ def pieces(data, quick):
         )
 
 
+def peers(data, quick):
+    """The public problems: costs do not change from run to run, so each is planned once."""
+    public_problems.measure(PROGRAM, data)
+
+
 def trace(data, quick):
     """A plan whose path is found wanting several times."""
     run(
         [
-            ROOT / "build/release/cli/swivel", "plan", ROOT / "data/problems/experiment_c.yaml",
+            PROGRAM, "plan", ROOT / "data/problems/experiment_c.yaml",
             "--seed", "1", "--episode", "13", "--planner", "parallel", "--threads", "2",
             "--trace", data / "trace.json"
         ],
@@ -121,8 +127,10 @@ def trace(data, quick):
 
 STEPS = {
     step.__name__: step
-    for step in (experiments, table1, plans, first_plans, pieces, trace)
+    for step in (experiments, table1, plans, first_plans, pieces, peers, trace)
 }
+# Steps whose data no figure shows: they need no matplotlib.
+NOT_DRAWN = {"peers"}
 
 
 def main():
@@ -149,7 +157,8 @@ def main():
     figures = documents / "docs/figures"
     figures.mkdir(exist_ok=True)
     begin = time.monotonic()
-    for name in arguments.only or STEPS:
+    steps = arguments.only or list(STEPS)
+    for name in steps:
         start = time.monotonic()
         STEPS[name](data, arguments.quick)
         print(f"{name}: {time.monotonic() - start:.0f} s", flush=True)
@@ -157,9 +166,12 @@ def main():
         shutil.copy(data / "trace.png", figures)
     if not arguments.only:
         (data / "minutes.txt").write_text(f"{(time.monotonic() - begin) / 60:.0f}")
-    written = plots.draw(data, figures, ROOT) + tables.fill(
-        data, [documents / "README.md", documents / "docs/performance.md"]
-    )
+    written = []
+    if not NOT_DRAWN.issuperset(steps):
+        import plots
+
+        written += plots.draw(data, figures, ROOT)
+    written += tables.fill(data, [documents / "README.md", documents / "docs/performance.md"])
     print(
         f"all: {time.monotonic() - begin:.0f} s; wrote "
         f"{', '.join(str(file.relative_to(ROOT)) for file in written)}"

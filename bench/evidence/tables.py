@@ -9,6 +9,7 @@ from collections import Counter
 from measured import (
     PAPER_SETTINGS, RESOLUTION, SETTINGS, Benchmarks, TableOne, load, mean, median, solved
 )
+from peers import peers
 from planner_table import planners
 from words import markdown, number
 
@@ -398,7 +399,7 @@ BLOCKS = {
     block.__name__: block
     for block in (
         machine, experiments, table1, findings, planners, plans, scenes, first_plans, pieces,
-        headline
+        peers, headline
     )
 }
 
