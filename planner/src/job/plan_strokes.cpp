@@ -86,13 +86,15 @@ std::vector<ArmPlane> planes_of_piece(const Stroke& stroke, const PathProblem& p
   return planes;
 }
 
-/// Returns the problem of a run as its lattice takes it: runs of a stroke in several runs have
-/// nodes at every layer, as the lattice has that finds where to lift off.
-PathProblem problem_of_lattice(const PreparedRobot& robot, const Problem& job,
-                               const StrokeRun& run) {
+/// Returns the problem of a run as its lattice takes it. Runs of a stroke in several runs have
+/// nodes at every layer, as the lattice has that finds where to lift off; so have all runs where
+/// states cost something by the caller's hook, which is that of every layer.
+PathProblem problem_of_lattice(const PreparedRobot& robot, const Problem& job, const StrokeRun& run,
+                               const Hooks& hooks) {
   PathProblem problem = problem_of_run(job, run);
-  return job.arm().strokes[run.stroke].piece ? on_all_layers(std::move(problem), robot.arm_class())
-                                             : problem;
+  return job.arm().strokes[run.stroke].piece || hooks.cost
+             ? on_all_layers(std::move(problem), robot.arm_class())
+             : problem;
 }
 
 /// A run with what its search needs. Each is searched by one thread at a time.
@@ -212,7 +214,7 @@ class JobRuns {
     std::vector<const World*> worlds;
     for (const StrokeRun& run : order) {
       if (find(run)) continue;
-      missing.emplace_back(run, problem_of_lattice(robot_, job_, run));
+      missing.emplace_back(run, problem_of_lattice(robot_, job_, run, options_.hooks));
       worlds.push_back(&world_of(missing.back().second.limits, missing.back().second));
     }
     std::vector<std::shared_ptr<PlannedRun>> made(missing.size());
@@ -328,7 +330,7 @@ class JobPlan {
         views.push_back(run.alone_plan->view());
       else
         views.push_back({robot_, run.problem, *run.lattice, *run.world, &run.cost_to_go->verdicts(),
-                         paths_[k]});
+                         paths_[k], run.problem.resolution});
     }
     return views;
   }
@@ -364,7 +366,9 @@ class JobPlan {
       add_lines(unused_key_warnings(unused_keys(chain_, robot_.arm_class()), run->problem),
                 result_.warnings);
       if (!run->lattice->has_layers_between())
-        add_lines(unused_key_warnings(unused_knot(robot_.arm_class(), "strokes in several runs"),
+        add_lines(unused_key_warnings(unused_knot(robot_.arm_class(),
+                                                  hooks_.cost ? "jobs whose states cost something"
+                                                              : "strokes in several runs"),
                                       problem_of_run(job_, run->run)),
                   result_.warnings);
       add_lines(path_warnings(robot_, run->problem, run->path, *run->world), result_.warnings);

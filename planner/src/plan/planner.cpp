@@ -119,12 +119,12 @@ struct Planner::Impl {
   bool world_is_old = true;                         // `world` only serves to make the next one from
   /// What depends on the task and on the pose of the path's frame.
   struct Layout {
-    /// `told_apart`: whether the lattices of S-R-S arms tell the turns of all joints apart, because
-    /// the caller's hooks may.
-    Layout(const PreparedRobot& robot, const PathProblem& problem, bool told_apart,
+    /// `hooks`: may tell the turns of joints apart, and say what the states of all layers cost.
+    Layout(const PreparedRobot& robot, const PathProblem& problem, const Hooks& hooks,
            const Budget& budget)
         : path(path_within_scale(problem, robot.arm().chain, budget)),
-          turns_told_apart(told_apart),
+          turns_told_apart(may_tell_turns_apart(hooks)),
+          states_cost(hooks.cost != nullptr),
           first{make_coaxial_lattice(robot.arm().chain, robot.arm_class(), path, problem, budget),
                 nullptr},
           coaxial(first.lattice != nullptr) {
@@ -137,12 +137,25 @@ struct Planner::Impl {
     [[nodiscard]] std::unique_ptr<Lattice> free_lattice(const PreparedRobot& robot,
                                                         const PathProblem& problem,
                                                         const Budget& budget) const {
-      auto lattice = make_lattice(robot.arm().chain, robot.arm_class(), path, problem, budget);
+      const auto make = [&](const PathProblem& of) {
+        return make_lattice(robot.arm().chain, robot.arm_class(), path, of, budget);
+      };
+      auto lattice = states_cost ? make(on_all_layers(problem, robot.arm_class())) : make(problem);
       return turns_told_apart && robot.arm_class().srs ? with_all_windings(std::move(lattice))
                                                        : std::move(lattice);
     }
+    /// Returns whether plans with these hooks search the same lattices.
+    [[nodiscard]] bool serves(const Hooks& hooks) const {
+      return turns_told_apart == may_tell_turns_apart(hooks) &&
+             states_cost == (hooks.cost != nullptr);
+    }
     ToolPath path;
+    // Whether the lattices of S-R-S arms tell the turns of all joints apart, because the caller's
+    // hooks may.
     bool turns_told_apart;
+    // Whether states cost something by the caller's hook: those of all layers, so that there are no
+    // knots.
+    bool states_cost;
     Searched first;  // searched by every plan
     // Whether joint 7 rests in `first` (make_coaxial_lattice()), so that another lattice may have a
     // path even if `first` has none.
@@ -266,13 +279,13 @@ struct Planner::Impl {
     executor_threads = wanted;
     return *executor;
   }
-  /// `told_apart`: as Layout takes it.
-  void lay_out(bool told_apart, const Budget& budget, PlanResult& result) {
+  /// `hooks`: as Layout takes them.
+  void lay_out(const Hooks& hooks, const Budget& budget, PlanResult& result) {
     Stopwatch watch;
     budget.tell(Stage::kLattice);
     require_joints_that_move(*robot, problem);
-    if (layout && layout->turns_told_apart != told_apart) path_changed();
-    if (!layout) layout = std::make_unique<Layout>(*robot, problem, told_apart, budget);
+    if (layout && !layout->serves(hooks)) path_changed();
+    if (!layout) layout = std::make_unique<Layout>(*robot, problem, hooks, budget);
     layout->second.reset();
     result.time_ms["lattice"] = watch.lap();
     if (world_is_old) world = World(world ? *world : robot->world(), problem, budget);
@@ -283,6 +296,10 @@ struct Planner::Impl {
     result.warnings = *of_robot;
     for (const auto& lines :
          {unused_key_warnings(unused_keys(robot->arm().chain, robot->arm_class()), problem),
+          hooks.cost
+              ? unused_key_warnings(
+                    unused_knot(robot->arm_class(), "paths whose states cost something"), problem)
+              : std::vector<std::string>(),
           path_warnings(*robot, problem, layout->path, *world)})
       result.warnings.insert(result.warnings.end(), lines.begin(), lines.end());
     SpecialPairs pairs;
@@ -434,7 +451,7 @@ struct Planner::Impl {
     if (problem.closed && options.hooks.cost)
       throw InvalidArgument(
           "closed: is not supported beside a cost of states: allowed is one of the two");
-    lay_out(may_tell_turns_apart(options.hooks), budget, result);
+    lay_out(options.hooks, budget, result);
     const EdgeRule rule = world->edge_rule(robot->radii());
     watch.lap();
     const Found found = [&] {
@@ -649,7 +666,9 @@ PlanView Planner::view() const {
           *last.lattice,
           *x.world,
           x.was_eager ? nullptr : &last.cost_to_go->verdicts(),
-          x.path};
+          x.path,
+          x.layout->states_cost ? on_all_layers(x.problem, x.robot->arm_class()).resolution
+                                : x.problem.resolution};
 }
 
 PlanResult plan(const PathProblem& problem, const PlanOptions& options) {

@@ -298,6 +298,27 @@ TEST(JobHooks, FindTheCheapestJobThatKeepsThem) {
   EXPECT_GE(dearer, at_least(20));
 }
 
+/// Arms without an arm angle have nodes at knots, but not where their states cost something.
+TEST(JobHooks, CostsOfStatesCountAtEveryLayerOfArmsAlongArcs) {
+  const JobCase pipe("kr6_weld_pipe_job.yaml");
+  const Answer without = plan_job(pipe.robot, pipe.job);
+  ASSERT_TRUE(without.has_rows());
+  const auto bowl = std::make_shared<Bowl>(without.arm().parts.front().rows.front().q);
+  PlanOptions options;
+  options.hooks.cost = bowl;
+  const Answer found = plan_job(pipe.robot, pipe.job, options);
+  ASSERT_TRUE(found.has_rows());
+  const AnswerCheck check = check_job(pipe.robot, pipe.job, found.arm().parts);
+  ASSERT_TRUE(check.passed) << check.failures.front();
+  double states = 0;
+  for (const Part& part : found.arm().parts) {
+    if (!part.run) continue;
+    for (const TrajectoryRow& row : part.rows) states += bowl->cost(row.q);
+  }
+  EXPECT_GT(states, 0);
+  EXPECT_NEAR(found.cost, check.cost + states, 1e-6);
+}
+
 TEST(JobHooks, RefinedJobsKeepThem) {
   Random random(seed("JobHooks.Refined"));
   const JobCase door("door_job.yaml");

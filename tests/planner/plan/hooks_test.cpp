@@ -573,6 +573,36 @@ TEST(Hooks, ThatSayNothingChangeNothing) {
   }
 }
 
+/// An arm without an arm angle has nodes at knots, but not where its states cost something: the
+/// states of all layers count, and `knot`, which then means nothing, is warned of.
+TEST(Hooks, CostsOfStatesCountAtEveryLayerOfArmsAlongArcs) {
+  const PathProblem problem = experiment("panda_weld_seam", 0.02, 0.1);
+  const PreparedRobot robot(problem);
+  const auto bowl = [](const Config& q) { return 0.02 * std::abs(q[0] - 0.2); };
+  Planner again(problem);  // whose lattice serves plans with and without a cost
+  const PlanResult on_knots = again.plan();
+  ASSERT_EQ(on_knots.status, PlanStatus::kSolved);
+  ASSERT_TRUE(on_knots.lattice.knots);
+  for (const PlannerKind planner : kPlanners) {
+    PlanOptions options = options_for(planner);
+    options.hooks.cost = cost_of(bowl);
+    const PlanResult found = again.plan(options);
+    ASSERT_EQ(found.status, PlanStatus::kSolved);
+    EXPECT_FALSE(found.lattice.knots);
+    double states = 0;
+    for (const TrajectoryRow& row : found.trajectory) states += bowl(row.q);
+    EXPECT_GT(states, 0.05);
+    EXPECT_NEAR(found.cost, check_trajectory(robot, problem, found.trajectory).cost + states, 1e-9);
+    PathProblem every_layer = problem;
+    every_layer.resolution.knot = 0;
+    expect_same(found, plan(robot, every_layer, options));
+    EXPECT_EQ(found.warnings, on_knots.warnings);
+    every_layer.resolution.knot = 0.05;
+    EXPECT_NE(plan(robot, every_layer, options).warnings, on_knots.warnings);
+    expect_same(again.plan(), on_knots);
+  }
+}
+
 TEST(Hooks, ACheckThatRefusesIsTheCause) {
   const PathProblem problem = experiment("experiment_a", 0.02, 0.2);
   const PreparedRobot robot(problem);

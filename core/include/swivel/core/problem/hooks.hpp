@@ -55,8 +55,9 @@ class StateCheck : public Hook {
 };
 
 /// A user's own cost of states: the cost of a path is that of its steps plus that of the states of
-/// all its layers, the first and the last included. Transitions between strokes cost what their
-/// moves do.
+/// all its layers, the first and the last included. So arms without an arm angle have nodes at
+/// every layer then (on_all_layers()); an S-R-S arm with a roll has nodes at knots, and the states
+/// there count. Transitions between strokes cost what their moves do.
 class StateCost : public Hook {
  public:
   /// Sets costs[k] to the cost of states[k], from 0 to 1000 times Lattice::cost_unit (1 where all

@@ -2,13 +2,14 @@
 #pragma once
 #include <vector>
 
+#include "swivel/core/problem/path_problem.hpp"
+
 namespace swivel {
 
 class Lattice;
 class PreparedRobot;
 class Verdicts;
 class World;
-struct PathProblem;
 
 /// What the last plan of a planner found out, for those who draw or measure it. Valid until the
 /// planner plans again, changes or is destroyed.
@@ -22,6 +23,7 @@ struct PlanView {
   /// deepest layer that was found to be reachable; after a search that was stopped, the part that
   /// was proved.
   const std::vector<int>& path;
+  Resolution resolution;  ///< that the lattice was made with
 };
 
 }  // namespace swivel

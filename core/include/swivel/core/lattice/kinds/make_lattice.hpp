@@ -22,7 +22,8 @@ struct ArmClass;
                                                     const Budget& budget = {});
 
 /// Returns a problem whose lattice has nodes at every layer, of an arm without an arm angle: that
-/// of a stroke in several runs or of an arm of two, whose search cannot halve steps between knots.
+/// of a stroke in several runs or of an arm of two, whose search cannot halve steps between knots,
+/// or of a path whose states cost something by the caller's hook (StateCost).
 [[nodiscard]] PathProblem on_all_layers(PathProblem problem, const ArmClass& arm);
 /// Returns the resolution of an arm's lattice for a record: `arc` and `knot` as they are in effect
 /// without an arm angle, and no `arc` with one.
