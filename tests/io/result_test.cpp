@@ -61,7 +61,7 @@ TEST(Result, KeysInTheOrderOfTheSchema) {
   EXPECT_FALSE(Json::parse(to_json(solved()))["trajectory"][0].contains("roll"));
   PlanResult turning = solved();  // has the keys of a tool that turns as well
   turning.lattice.grid->rolls = 63;
-  turning.lattice.knots = {.bound = 1.25, .gap = 0.02, .halved = true};
+  turning.lattice.knots = {.bound = 1.25, .gap = 0.02, .bias = 0.01, .halved = true};
   turning.trajectory[1].roll = 0.2;
   const Json json = Json::parse(to_json(turning)),
              schema = properties_of(Json::parse(result_json_schema()));

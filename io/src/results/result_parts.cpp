@@ -18,6 +18,7 @@ Json lattice_json(const LatticeInfo& lattice, bool solved) {
   if (const auto& knots = lattice.knots) {
     json["knot_bound"] = knots->bound ? Json(*knots->bound) : Json(nullptr);
     json["knot_gap"] = solved && knots->gap ? Json(*knots->gap) : Json(nullptr);
+    json["bias"] = solved && knots->bias ? Json(*knots->bias) : Json(nullptr);
     json["halved"] = knots->halved;
   }
   json["nodes"] = lattice.nodes;

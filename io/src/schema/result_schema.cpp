@@ -143,6 +143,10 @@ Schema lattice() {
               "knot_gap", or_null(number()),
               "by what share of `knot_bound` the rows of the lattice's path cost more; those of a "
               "refined one, which goes beside the nodes, may cost less"),
+          key_of_some(
+              "bias", or_null(number()),
+              "an estimate: by what share at most the lattice's path is dearer than one whose "
+              "redundancy changes by any slope; `null` where the metric is not `l2`"),
           key_of_some("halved", boolean(),
                       "whether knots were added wherever that might have been worth it; `false`: "
                       "time was up before"),

@@ -441,7 +441,8 @@ class JobPlan {
       if (!part.run) continue;
       result_.arm().runs[k].lattice.cost = part.cost;
       part.cost = cost_of_rows(*runs_[k]->lattice, paths_[k], part.rows, part.cost);
-      set_gap(part.cost, result_.arm().runs[k].lattice);
+      describe_knots(part.cost, *runs_[k]->lattice, paths_[k],
+                     runs_[k]->problem.resolution.arc_of_nodes(), result_.arm().runs[k].lattice);
       result_.cost += part.cost - result_.arm().runs[k].lattice.cost;
       ++k;
     }

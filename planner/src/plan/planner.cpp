@@ -473,7 +473,7 @@ struct Planner::Impl {
       require_same_turns(lattice, result.trajectory, problem.source);
       measure_margins(robot->arm().chain, layout->path, result.trajectory, result);
       result.cost = cost_of_rows(lattice, path, result.trajectory, result.cost);
-      set_gap(result.cost, result.lattice);
+      describe_knots(result.cost, lattice, path, problem.resolution.arc_of_nodes(), result.lattice);
     }
     result.time_ms["plan"] = whole.lap();
     watch.lap();

@@ -2,6 +2,8 @@
 #include "plan/search_on_knots.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <set>
 #include <utility>
 #include <vector>
@@ -139,6 +141,41 @@ class Levels {
   LatticeInfo::Knots told_;
 };
 
+/// Returns by what share at most a path is dearer than one whose redundancy changes by any slope:
+/// an estimate, the mean of min(r² / 8 c², √2 - 1) over the drift of the path's steps. A step of
+/// travel L moves the joints by c L across the self-motion, and along it by multiples of about r L,
+/// as far as nodes lie apart (docs/theory.md "As the resolution goes to zero"). c and r are in
+/// units of the metric for each metre.
+double bias_of_slopes(const Lattice& lattice, const std::vector<int>& path, double arc) {
+  constexpr double kMostApart = 1.5, kLeastWeight = 1e-2;  // of `arc`; of the largest weight
+  const Eigen::Map<const Eigen::Vector<double, kDof>> weights(lattice.cost_scale().data());
+  double drift = 0, excess = 0;
+  for (int step = 0; step + 1 < lattice.layers(); ++step) {
+    const auto k = static_cast<std::size_t>(step);
+    const double length = lattice.path().layer(step + 1).travel - lattice.path().layer(step).travel;
+    if (length <= 0) continue;
+    const Config q = *lattice.node(step, path[k]);
+    const Config move = lattice.delta(q, *lattice.node(step + 1, path[k + 1]));
+    const Eigen::Vector<double, kDof> along =
+        lattice.chain().jacobian(q).fullPivLu().kernel().col(0);
+    Eigen::Vector<double, kDof> self, across;  // of the self-motion, and of the move
+    double distance = 0;                       // that nodes are told apart by, squared
+    for (Eigen::Index j = 0; j < kDof; ++j) {
+      self[j] = weights[j] * along[j], across[j] = weights[j] * move[j];
+      const double weight = std::max(weights[j], kLeastWeight * weights.maxCoeff());
+      distance += weight * weight * along[j] * along[j];
+    }
+    if (const double squared = self.squaredNorm(); squared > 0)
+      across -= self.dot(across) / squared * self;
+    const double c = across.norm() / length;
+    if (c == 0) continue;
+    const double r = kMostApart * arc / length * self.norm() / std::sqrt(distance);
+    drift += c * length;
+    excess += c * length * std::min(r * r / (8 * c * c), std::numbers::sqrt2 - 1);
+  }
+  return drift > 0 ? excess / drift : 0;
+}
+
 }  // namespace
 
 bool can_halve(const Lattice& lattice) {
@@ -166,9 +203,12 @@ Budget most_of(const Budget& budget, const PlanOptions& options) {
   return Budget(seconds, options.cancel, options.stop, &options.progress);
 }
 
-void set_gap(double cost, LatticeInfo& lattice) {
-  if (auto& knots = lattice.knots; knots && knots->bound)
-    knots->gap = *knots->bound > 0 ? std::max(0.0, cost / *knots->bound - 1) : 0;
+void describe_knots(double cost, const Lattice& lattice, const std::vector<int>& path, double arc,
+                    LatticeInfo& info) {
+  auto& knots = info.knots;
+  if (!knots) return;
+  if (knots->bound) knots->gap = *knots->bound > 0 ? std::max(0.0, cost / *knots->bound - 1) : 0;
+  if (lattice.cost().metric == CostMetric::kL2) knots->bias = bias_of_slopes(lattice, path, arc);
 }
 
 FoundOnKnots search_on_knots(Searched& first, const SearchLattice& search,

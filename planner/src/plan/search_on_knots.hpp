@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "plan/search.hpp"
 #include "swivel/core/answer/plan.hpp"
@@ -54,7 +55,10 @@ void take_from_coarser(const Searched& coarser, Searched& finer, bool bounds);
 /// Returns a budget that ends somewhat before that of the plan does.
 [[nodiscard]] Budget most_of(const Budget& budget, const PlanOptions& options);
 
-/// Sets LatticeInfo::Knots::gap of an answer that costs `cost`, where there is a bound.
-void set_gap(double cost, LatticeInfo& lattice);
+/// Sets LatticeInfo::Knots::gap of an answer whose rows cost `cost`, where there is a bound, and
+/// LatticeInfo::Knots::bias. `path`: of the answer, one slot for each layer of `lattice`, whose
+/// nodes lie `arc` apart (Resolution::arc_of_nodes()).
+void describe_knots(double cost, const Lattice& lattice, const std::vector<int>& path, double arc,
+                    LatticeInfo& info);
 
 }  // namespace swivel

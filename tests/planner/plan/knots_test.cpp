@@ -445,9 +445,19 @@ TEST(Knots, PlansComeNearTheirRefinedPaths) {
     std::printf("%s: %.4f at every layer, %.4f at knots, %.4f refined\n", name, every_layer,
                 found.cost, refined.cost);
     EXPECT_LE(found.cost, 1.02 * refined.cost) << name;
+    ASSERT_TRUE(found.lattice.knots && found.lattice.knots->bias) << name;
+    EXPECT_LE(found.cost, (1 + *found.lattice.knots->bias) * refined.cost) << name;
     EXPECT_LE(found.cost, 1.001 * every_layer) << name;
   }
   PathProblem seam = io::load_path_problem(data_dir() / "problems/panda_weld_seam.yaml");
+  // The bias goes with the square of `arc`; of other metrics there is none.
+  const double bias = *plan(seam).lattice.knots->bias;
+  seam.resolution.arc = 0.5 * seam.resolution.arc_of_nodes();
+  EXPECT_NEAR(*plan(seam).lattice.knots->bias, bias / 4, 0.02 * bias);
+  seam.resolution.arc.reset();
+  seam.cost.metric = CostMetric::kMax;
+  EXPECT_FALSE(plan(seam).lattice.knots->bias);
+  seam.cost.metric = CostMetric::kL2;
   double least = kNone, most = 0;
   for (const double ds : {0.0025, 0.005, 0.01, 0.02}) {
     seam.resolution.ds = ds;
