@@ -23,13 +23,13 @@ struct ArmInCell {
         world(robot.world(), problem, budget),
         rule(world.edge_rule(robot.radii())),
         path(path_within_scale(problem, robot.arm().chain, budget)),
+        of_lattice(on_all_layers(problem, robot.arm_class())),
         is_given(prepared.given_arm() == arm) {
     const Chain& chain = robot.arm().chain;
     if (is_given)
       lattice = std::make_unique<GivenLattice>(chain, path, problem, prepared.given_rows());
     else
-      lattice = make_lattice(chain, robot.arm_class(), path,
-                             on_all_layers(problem, robot.arm_class()), budget);
+      lattice = make_lattice(chain, robot.arm_class(), path, of_lattice, budget);
   }
   ArmInCell(const ArmInCell&) = delete;
   ArmInCell& operator=(const ArmInCell&) = delete;
@@ -39,6 +39,7 @@ struct ArmInCell {
   World world;
   EdgeRule rule;
   ToolPath path;
+  PathProblem of_lattice;  // `problem` as the lattice takes it: with nodes at every layer
   bool is_given;
   std::unique_ptr<Lattice> lattice;
 };

@@ -63,13 +63,7 @@ struct PlannedArm : ArmInCell {
   }
   [[nodiscard]] PlanView view() const {
     if (without_path) return without_path->view();
-    return {robot,
-            problem,
-            *lattice,
-            world,
-            &*noted,
-            shown,
-            on_all_layers(problem, robot.arm_class()).resolution};
+    return {robot, problem, *lattice, world, &*noted, shown, of_lattice.resolution};
   }
 };
 using PlannedArms = std::array<std::unique_ptr<PlannedArm>, 2>;

@@ -34,8 +34,7 @@ class WorkcellVerifier {
 
   WorkcellCertificateCheck run() {
     for (std::size_t k = 0; k < 2; ++k)
-      require_same_layout(on_all_layers(arms_[k]->problem, arms_[k]->robot.arm_class()),
-                          arms_[k]->robot.arm_class(),
+      require_same_layout(arms_[k]->of_lattice, arms_[k]->robot.arm_class(),
                           {&certificate_.resolution[k], certificate_.edges[k], certificate_.layers},
                           arms_[k]->lattice->layers());
     try {
