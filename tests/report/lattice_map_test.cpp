@@ -19,7 +19,7 @@
 #include "robots.hpp"
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/lattice/kinds/arc_lattice.hpp"
-#include "swivel/core/lattice/kinds/roll_lattice.hpp"
+#include "swivel/core/lattice/kinds/knot_grid.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/io/io.hpp"
 

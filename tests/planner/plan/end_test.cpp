@@ -18,7 +18,7 @@
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/lattice/kinds/arc_lattice.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
-#include "swivel/core/lattice/kinds/roll_lattice.hpp"
+#include "swivel/core/lattice/kinds/knot_grid.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
@@ -172,7 +172,7 @@ struct Truth {
 
 /// Says by the definition whether nodes of a lattice of rolls may be joined on the last step, which
 /// leads to the given end: by the arm angles of their cells, and by the roll itself.
-bool may_end(const RollLattice& lattice, const Limits& limits, const Resolution& resolution,
+bool may_end(const KnotGrid& lattice, const Limits& limits, const Resolution& resolution,
              int a) {
   const int step = lattice.layers() - 2;
   if (lattice.branch(step, a) != lattice.branch(step + 1, 0)) return false;
@@ -205,7 +205,7 @@ Truth truth_of(const PreparedRobot& robot, const ToolPath& path, const PathProbl
         *lattice, [&](int layer, int a, int b) { return window_allows(*lattice, layer, a, b); });
     truth.lattice = std::move(lattice);
   } else if (nodes == Nodes::kRolls) {
-    auto lattice = RollLattice::make(chain, robot.srs(), path, problem);
+    auto lattice = KnotGrid::make(chain, robot.srs(), path, problem);
     truth.answer = answer(*lattice, [&](int layer, int a, int b) {
       return layer + 2 == lattice->layers()
                  ? may_end(*lattice, problem.limits, problem.resolution, a)

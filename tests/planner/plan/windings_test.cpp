@@ -14,7 +14,7 @@
 #include "inexact_robots.hpp"
 #include "planners.hpp"
 #include "random_problem.hpp"
-#include "swivel/core/lattice/kinds/roll_lattice.hpp"
+#include "swivel/core/lattice/kinds/knot_grid.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/planner/certificate/infeasibility_certificate.hpp"
@@ -143,7 +143,7 @@ PathProblem wide_problem(const TestRobot& robot, const Wide& wide, bool rolls, R
 bool has_circles(const Lattice& lattice) {
   if (const auto* grid = dynamic_cast<const SrsLattice*>(&lattice))
     return grid->circles() != Lattice::Joints{};
-  return dynamic_cast<const RollLattice&>(lattice).circles() != Lattice::Joints{};
+  return dynamic_cast<const KnotGrid&>(lattice).circles() != Lattice::Joints{};
 }
 
 /// Expects the certificate that there is no path to pass its check.

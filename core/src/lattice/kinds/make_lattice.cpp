@@ -5,7 +5,7 @@
 
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/lattice/kinds/arc_lattice.hpp"
-#include "swivel/core/lattice/kinds/roll_lattice.hpp"
+#include "swivel/core/lattice/kinds/knot_grid.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/core/messages/input_error.hpp"
 
@@ -18,7 +18,7 @@ std::unique_ptr<Lattice> make_lattice(const Chain& chain, const ArmClass& arm, c
                      "path.closed: is not supported yet for arms of seven joints whose roll is "
                      "free: allowed is path.roll left out, or path.closed");
   if (chain.free_roll && !path.unturned())
-    return RollLattice::make(chain, *arm.srs, path, problem, budget, std::nullopt, true);
+    return KnotGrid::make(chain, *arm.srs, path, problem, budget, std::nullopt, true);
   if (arm.kind == ArmKind::kSrs)
     return std::make_unique<SrsLattice>(
         chain, *arm.srs, path, problem, budget, std::vector<ArmPlane>(), std::nullopt,
@@ -61,7 +61,7 @@ std::unique_ptr<Lattice> make_coaxial_lattice(const Chain& chain, const ArmClass
                                               const Budget& budget) {
   if (path.closed()) return nullptr;
   const auto rest = last_joint_at_rest(chain, arm, problem);
-  return rest ? RollLattice::make(chain, *arm.srs, path, problem, budget, rest, true) : nullptr;
+  return rest ? KnotGrid::make(chain, *arm.srs, path, problem, budget, rest, true) : nullptr;
 }
 
 }  // namespace swivel

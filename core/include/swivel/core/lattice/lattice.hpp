@@ -95,7 +95,7 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
 
   // --- layers of the tool's path between two layers of the lattice
   /// Returns whether the lattice has nodes only at every few layers of the tool's path
-  /// (roll_lattice.hpp). What nodes and moves must keep then also holds at the layers between, and
+  /// (knot_grid.hpp). What nodes and moves must keep then also holds at the layers between, and
   /// is part of an edge's validity.
   [[nodiscard]] virtual bool has_layers_between() const { return false; }
   /// Returns the path that has a layer for each row of a trajectory: path(), or the finer path that

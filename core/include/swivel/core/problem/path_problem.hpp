@@ -191,7 +191,7 @@ struct Robot {
   /// The allowed range of the roll, where the tool may turn about its z axis. To an arm of six
   /// joints the roll is the seventh joint, last in every list of joints, without a speed of its
   /// own, and by default without a weight: turning the tool costs nothing. For an S-R-S
-  /// arm of seven joints the roll is chosen besides the arm angle (roll_lattice.hpp).
+  /// arm of seven joints the roll is chosen besides the arm angle (knot_grid.hpp).
   std::optional<Roll> roll;
 };
 

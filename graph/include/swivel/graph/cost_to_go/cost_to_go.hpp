@@ -131,7 +131,7 @@ class CostToGo {
 /// best(), first_slot() and every best path are exact all the same.
 enum class Pruning { kNone, kByBound };
 /// Returns the cost-to-go of a lattice: of an SrsLattice by vector code over its grid, of a
-/// RollLattice layer by layer over rolls and arm angles, always whole, of an ExplicitLattice over
+/// KnotGrid layer by layer over rolls and arm angles, always whole, of an ExplicitLattice over
 /// all pairs of nodes, bounded from a given start alone. The memory of `recycled`, of any lattice,
 /// is used again: pages fresh from the system take a quarter of a plan that meets obstacles.
 [[nodiscard]] std::unique_ptr<CostToGo> make_cost_to_go(

@@ -13,7 +13,7 @@ namespace swivel {
 struct ArmClass;
 
 /// Returns the lattice of a problem's path for an arm of class `arm`: a grid of arm angles
-/// (SrsLattice), of rolls and arm angles if the tool may turn (RollLattice), or arcs of self-motion
+/// (SrsLattice), of rolls and arm angles if the tool may turn (KnotGrid), or arcs of self-motion
 /// (ArcLattice). Throws InputError where the lattice does, also for limits.arm_slope with an arm
 /// that has no arm angle; Stopped. `chain`, `arm` and `path` must outlive the lattice.
 [[nodiscard]] std::unique_ptr<Lattice> make_lattice(const Chain& chain, const ArmClass& arm,

@@ -16,7 +16,7 @@
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/kinematics/srs/arm_angle.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
-#include "swivel/core/lattice/kinds/roll_lattice.hpp"
+#include "swivel/core/lattice/kinds/knot_grid.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/graph/cost_to_go/cost_to_go.hpp"
@@ -119,7 +119,7 @@ struct Counts {
 /// Says by the definition which nodes of neighbouring layers may be joined.
 class Joinable {
  public:
-  Joinable(const RollLattice& lattice, const ToolPath& path, const PathProblem& problem)
+  Joinable(const KnotGrid& lattice, const ToolPath& path, const PathProblem& problem)
       : lattice_(lattice), path_(path), problem_(problem) {}
 
   // Own words for what may follow what: cells on circles.
@@ -168,14 +168,14 @@ class Joinable {
     return apart <= std::min(cells, circle ? (n - 1) / 2 : n - 1.0);
   }
 
-  const RollLattice& lattice_;
+  const KnotGrid& lattice_;
   const ToolPath& path_;
   const PathProblem& problem_;
 };
 
 /// Holds a lattice of one problem and its answer by brute force.
 struct Truth {
-  std::unique_ptr<const RollLattice> lattice;
+  std::unique_ptr<const KnotGrid> lattice;
   BruteForcePath answer;
 };
 
@@ -184,18 +184,18 @@ Truth truth_of(const PreparedRobot& robot, const ToolPath& path, const PathProbl
                Counts& counts) {
   const Chain& chain = robot.arm().chain;
   const EdgeRule rule = robot.world().edge_rule(robot.radii());
-  const auto answer_on = [&](const RollLattice& lattice) {
+  const auto answer_on = [&](const KnotGrid& lattice) {
     return brute_force(lattice, robot.world(), rule, Joinable(lattice, path, problem));
   };
   // Joint 7 at rest where that is enough.
   const std::optional<double> rest = last_joint_at_rest(chain, robot.arm_class(), problem);
   const bool coaxial = rest.has_value();
   Truth truth;
-  truth.lattice = RollLattice::make(chain, robot.srs(), path, problem, {}, rest);
+  truth.lattice = KnotGrid::make(chain, robot.srs(), path, problem, {}, rest);
   truth.answer = answer_on(*truth.lattice);
   counts.at_rest += coaxial && truth.answer.solved;
   if (coaxial && !truth.answer.solved) {
-    truth.lattice = RollLattice::make(chain, robot.srs(), path, problem);
+    truth.lattice = KnotGrid::make(chain, robot.srs(), path, problem);
     truth.answer = answer_on(*truth.lattice);
     counts.moved_after_all += truth.answer.solved;
   }
@@ -261,8 +261,8 @@ void check_problem(const PathProblem& problem, const std::string& what, Counts& 
   }
 }
 
-TEST(RollLattice, FourPlannersAndBruteForceOnRandomProblems) {
-  const std::uint64_t base = seed("RollLattice");
+TEST(KnotGrid, FourPlannersAndBruteForceOnRandomProblems) {
+  const std::uint64_t base = seed("KnotGrid");
   Random any(base);
   const auto arms = robots(any);
   Counts counts;
@@ -358,8 +358,8 @@ void expect_refined_at_rest(const PreparedRobot& robot, const PathProblem& probl
 
 /// Where the tool turns about joint 7's axis, a path along which that joint rests costs no more
 /// than the least of all rolls.
-TEST(RollLattice, JointSevenRests) {
-  const std::uint64_t base = seed("RollLattice.JointSevenRests");
+TEST(KnotGrid, JointSevenRests) {
+  const std::uint64_t base = seed("KnotGrid.JointSevenRests");
   Random any(base);
   auto arms = all_robots();
   arms.push_back(rounded(arms.front(), 1e-4));
@@ -392,7 +392,7 @@ TEST(RollLattice, JointSevenRests) {
 
 /// A URDF or a tool that rounds pi, or writes lengths to a tenth of a millimetre, does not hide
 /// that the tool turns about joint 7's axis.
-TEST(RollLattice, JointSevenRestsUnderARoundedTool) {
+TEST(KnotGrid, JointSevenRestsUnderARoundedTool) {
   PathProblem problem = io::load_path_problem(data_dir() / "problems/torch_door.yaml");
   problem.attached.clear();
   problem.resolution.droll = 0.3;
@@ -414,7 +414,7 @@ TEST(RollLattice, JointSevenRestsUnderARoundedTool) {
 }
 
 /// Where joint 7 rests determines what the tool meets: joint 7 moves if there is no path otherwise.
-TEST(RollLattice, JointSevenMovesWhereItCannotRest) {
+TEST(KnotGrid, JointSevenMovesWhereItCannotRest) {
   class NotNear final : public StateCheck {
    public:
     explicit NotNear(double rest) : rest_(rest) {}
@@ -468,8 +468,8 @@ TEST(RollLattice, JointSevenMovesWhereItCannotRest) {
 }
 
 /// Values after removals, few and many at once, are those of a sweep over what is left.
-TEST(RollLattice, RepairsAreSweeps) {
-  const std::uint64_t base = seed("RollLattice.RepairsAreSweeps");
+TEST(KnotGrid, RepairsAreSweeps) {
+  const std::uint64_t base = seed("KnotGrid.RepairsAreSweeps");
   PathProblem problem = io::load_path_problem(data_dir() / "problems/torch_door.yaml");
   problem.resolution.droll = 0.25;
   problem.resolution.dphi = 0.3;
@@ -483,7 +483,7 @@ TEST(RollLattice, RepairsAreSweeps) {
       problem.start = plan(robot, problem).trajectory[0].q;
       problem.resolution.droll = 0.35;
     }
-    const auto lattice = RollLattice::make(robot.arm().chain, robot.srs(),
+    const auto lattice = KnotGrid::make(robot.arm().chain, robot.srs(),
                                            problem_path(problem, robot.arm().chain), problem);
     const auto repaired = make_cost_to_go(*lattice);
     repaired->sweep(lattice->layers() - 1);
@@ -589,11 +589,11 @@ void expect_timed(const PathProblem& episode, const PreparedRobot& robot, const 
 
 /// The door's nozzle, from random poses: refined paths and motions pass the check, with the roll
 /// that was chosen.
-TEST(RollLattice, PathsAreRefinedAndTimed) {
+TEST(KnotGrid, PathsAreRefinedAndTimed) {
   PathProblem problem = io::load_path_problem(data_dir() / "problems/torch_door.yaml");
   problem.resolution.droll = 0.1;
   problem.resolution.dphi = 0.2;
-  Random random(seed("RollLattice.PathsAreRefinedAndTimed"));
+  Random random(seed("KnotGrid.PathsAreRefinedAndTimed"));
   const PreparedRobot robot(problem);
   RefinementCounts counts;
   const int count = trials(24);
@@ -626,8 +626,8 @@ TEST(RollLattice, PathsAreRefinedAndTimed) {
 }
 
 /// Proofs that there is no path are verified without the planner, and forged ones refused.
-TEST(RollLattice, CutsAreVerified) {
-  const std::uint64_t base = seed("RollLattice.CutsAreVerified");
+TEST(KnotGrid, CutsAreVerified) {
+  const std::uint64_t base = seed("KnotGrid.CutsAreVerified");
   Random any(base);
   const auto arms = robots(any);
   int cuts = 0, forged = 0, edges = 0;
@@ -666,7 +666,7 @@ TEST(RollLattice, CutsAreVerified) {
 }
 
 /// The caller's check is asked about what lies between the layers of the lattice, too.
-TEST(RollLattice, AsksTheCallersCheckBetween) {
+TEST(KnotGrid, AsksTheCallersCheckBetween) {
   class NotBeyond final : public StateCheck {
    public:
     NotBeyond(const Chain& chain, double x) : chain_(&chain), x_(x) {}
@@ -704,8 +704,8 @@ TEST(RollLattice, AsksTheCallersCheckBetween) {
 }
 
 /// What is wrong with a trajectory whose tool turns is found.
-TEST(RollLattice, CheckRefusesOtherRolls) {
-  Random random(seed("RollLattice.CheckRefusesOtherRolls"));
+TEST(KnotGrid, CheckRefusesOtherRolls) {
+  Random random(seed("KnotGrid.CheckRefusesOtherRolls"));
   int tried = 0;
   for (int trial = 0; tried < 5 && trial < 200; ++trial) {
     PathProblem problem = roll_problem(all_robots().front(), random);
@@ -756,8 +756,8 @@ TEST(RollLattice, CheckRefusesOtherRolls) {
   EXPECT_EQ(tried, 5);
 }
 
-TEST(RollLattice, RefusesWhatItCannotDo) {
-  Random random(seed("RollLattice.RefusesWhatItCannotDo"));
+TEST(KnotGrid, RefusesWhatItCannotDo) {
+  Random random(seed("KnotGrid.RefusesWhatItCannotDo"));
   PathProblem problem = roll_problem(all_robots().front(), random);
   const auto expect = [&](const PathProblem& wrong, const std::string& words) {
     try {

@@ -30,14 +30,14 @@ namespace swivel {
 /// to whole cells, with at least one cell of arm angles; rolls are not rounded if waypoints have
 /// windows, nor on the last step to a given end. Bounded joints of more than a turn are circles
 /// if that is asked for and SrsLattice::possible_circles() allows it. Immutable once made.
-class RollLattice final : public Lattice {
+class KnotGrid final : public Lattice {
  public:
   /// Returns the lattice of the whole path. `chain`, `arm` and `path` must outlive it.
   /// `last_joint`: where joint 7 rests, rad (last_joint_at_rest()); there is no roll to choose
   /// then, because joint 7 would only undo it. `circles`: whether joints that can be circles are.
   /// Throws InputError as SrsLattice does, and for a start or end whose roll is outside the range,
   /// a roll_slope of less than a cell from knot to knot, and limits.step_error; Stopped.
-  [[nodiscard]] static std::unique_ptr<RollLattice> make(
+  [[nodiscard]] static std::unique_ptr<KnotGrid> make(
       const Chain& chain, const SrsArm& arm, const ToolPath& path, const PathProblem& problem,
       const Budget& budget = {}, std::optional<double> last_joint = {}, bool circles = false);
 
@@ -167,7 +167,7 @@ class RollLattice final : public Lattice {
     std::vector<int> layers;
     std::unique_ptr<const ToolPath> path;
   };
-  RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path,
+  KnotGrid(const Chain& chain, const SrsArm& arm, const ToolPath& path,
               const PathProblem& problem, const Budget& budget, Knots knots,
               std::optional<double> last_joint, const Joints& wound);
   static Knots knots_along(const ToolPath& path, const Resolution& resolution);

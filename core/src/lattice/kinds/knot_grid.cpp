@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/lattice/kinds/roll_lattice.hpp"
+#include "swivel/core/lattice/kinds/knot_grid.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -56,7 +56,7 @@ int cells_per_step(int angles, double turn, double dphi) {
 
 }  // namespace
 
-std::unique_ptr<RollLattice> RollLattice::make(const Chain& chain, const SrsArm& arm,
+std::unique_ptr<KnotGrid> KnotGrid::make(const Chain& chain, const SrsArm& arm,
                                                const ToolPath& path, const PathProblem& problem,
                                                const Budget& budget,
                                                std::optional<double> last_joint, bool circles) {
@@ -65,11 +65,11 @@ std::unique_ptr<RollLattice> RollLattice::make(const Chain& chain, const SrsArm&
                      "limits.step_error: allowed without path.roll, or for arms of six joints");
   Joints wound;
   wound.fill(!circles);
-  return std::unique_ptr<RollLattice>(new RollLattice(
+  return std::unique_ptr<KnotGrid>(new KnotGrid(
       chain, arm, path, problem, budget, knots_along(path, problem.resolution), last_joint, wound));
 }
 
-RollLattice::Knots RollLattice::knots_along(const ToolPath& path, const Resolution& resolution) {
+KnotGrid::Knots KnotGrid::knots_along(const ToolPath& path, const Resolution& resolution) {
   Knots knots;
   knots.layers = swivel::knots_along(
       path, {resolution.knot.value_or(kKnotOfRolls), kMostTurning * resolution.dalpha});
@@ -77,7 +77,7 @@ RollLattice::Knots RollLattice::knots_along(const ToolPath& path, const Resoluti
   return knots;
 }
 
-RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path,
+KnotGrid::KnotGrid(const Chain& chain, const SrsArm& arm, const ToolPath& path,
                          const PathProblem& problem, const Budget& budget, Knots knots,
                          std::optional<double> last_joint, const Joints& wound)
     : Lattice(chain, *knots.path, problem, arm.fit_error),
@@ -134,7 +134,7 @@ RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& 
   find_near(problem);
 }
 
-void RollLattice::place_given(const PathProblem& problem, const Budget& budget) {
+void KnotGrid::place_given(const PathProblem& problem, const Budget& budget) {
   const auto place = [&](PathEnd which, PathProblem only) {
     const double roll = roll_of_given(which, problem, *chain_, *whole_, *chain_->free_roll);
     ToolPath turned =
@@ -152,11 +152,11 @@ void RollLattice::place_given(const PathProblem& problem, const Budget& budget) 
 }
 
 /// Returns the travel from the knot at which a step starts to that at which it ends, m.
-double RollLattice::way(int step) const {
+double KnotGrid::way(int step) const {
   return path_->layer(step + 1).travel - path_->layer(step).travel;
 }
 
-void RollLattice::find_near(const PathProblem& problem) {
+void KnotGrid::find_near(const PathProblem& problem) {
   const double droll = problem.resolution.droll;
   const int values = rolls(), most = circle_ ? (values - 1) / 2 : values - 1;
   bool turns = values == 1;
@@ -209,13 +209,13 @@ void RollLattice::find_near(const PathProblem& problem) {
   }
 }
 
-bool RollLattice::may_end_from(int rank) const {
+bool KnotGrid::may_end_from(int rank) const {
   const int step = layers() - 2;
   const double turn = last_->roll - (step == 0 && start_ ? start_->roll : roll_of_rank(step, rank));
   return std::abs(circle_ ? wrap_angle(turn) : turn) <= limits_.roll_slope * way(step) + 1e-9;
 }
 
-int RollLattice::rank_beside(int layer) const {
+int KnotGrid::rank_beside(int layer) const {
   if (layer == 0 && start_) return 0;
   int nearest = 0;
   const auto away = [&](int rank) {
@@ -227,7 +227,7 @@ int RollLattice::rank_beside(int layer) const {
   return nearest;
 }
 
-std::vector<double> RollLattice::rolls_along(int value) const {
+std::vector<double> KnotGrid::rolls_along(int value) const {
   const double part = values_[static_cast<std::size_t>(value)];
   std::vector<double> rolls;
   for (int layer = 0; layer < layers(); ++layer) {
@@ -237,7 +237,7 @@ std::vector<double> RollLattice::rolls_along(int value) const {
   return rolls;
 }
 
-void RollLattice::choose_rolls(double nominal, double droll) {
+void KnotGrid::choose_rolls(double nominal, double droll) {
   const Roll& range = *chain_->free_roll;
   std::vector<double> away;  // from the nominal roll, in the mean, by value
   if (windows_of_roll_) {
@@ -276,12 +276,12 @@ void RollLattice::choose_rolls(double nominal, double droll) {
     rank_[static_cast<std::size_t>(value_of_[rank])] = static_cast<int>(rank);
 }
 
-std::int64_t RollLattice::nodes() const {
+std::int64_t KnotGrid::nodes() const {
   return static_cast<std::int64_t>(layers() - 2) * rolls() * width_ + slots(0) +
          slots(layers() - 1);
 }
 
-void RollLattice::layer_nodes(int layer, std::vector<Node>& out) const {
+void KnotGrid::layer_nodes(int layer, std::vector<Node>& out) const {
   out.clear();
   if (given(layer)) {
     if (const auto q = node(layer, 0)) out.push_back({0, *q});
@@ -294,7 +294,7 @@ void RollLattice::layer_nodes(int layer, std::vector<Node>& out) const {
   }
 }
 
-std::optional<Lattice::Reach> RollLattice::out_of_reach(int layer) const {
+std::optional<Lattice::Reach> KnotGrid::out_of_reach(int layer) const {
   if (const Given* const only = given(layer)) return only->lattice.out_of_reach(layer);
   std::optional<Reach> nearest;
   for (int rank = 0; rank < rolls(); ++rank) {
@@ -307,19 +307,19 @@ std::optional<Lattice::Reach> RollLattice::out_of_reach(int layer) const {
   return nearest;
 }
 
-int RollLattice::neighbour_in_redundancy(int layer, int slot, int by) const {
+int KnotGrid::neighbour_in_redundancy(int layer, int slot, int by) const {
   if (given(layer)) return -1;
   return slot_of(slot / width_, at_roll(0).neighbour_in_redundancy(layer, slot % width_, by));
 }
 
-int RollLattice::neighbour_in_roll(int layer, int slot, int by) const {
+int KnotGrid::neighbour_in_roll(int layer, int slot, int by) const {
   if (given(layer)) return -1;
   const int values = rolls(), value = value_of_[static_cast<std::size_t>(slot / width_)] + by;
   if (!circle_ && (value < 0 || value >= values)) return -1;
   return slot_of(rank_[static_cast<std::size_t>((value + values) % values)], slot % width_);
 }
 
-int RollLattice::neighbour_along_path(int layer, int slot, int by) const {
+int KnotGrid::neighbour_along_path(int layer, int slot, int by) const {
   if (layer + by < 0 || layer + by >= layers()) return -1;
   if (given(layer + by))
     return (by < 0 ? in_window(layer - 1, 0, slot) : in_window(layer, slot, 0)) ? 0 : -1;
@@ -327,7 +327,7 @@ int RollLattice::neighbour_along_path(int layer, int slot, int by) const {
   return slot;
 }
 
-void RollLattice::slots_with_same_body_poses(int layer, int slot, unsigned groups,
+void KnotGrid::slots_with_same_body_poses(int layer, int slot, unsigned groups,
                                              std::vector<int>& out) const {
   if (is_approximate() || given(layer)) {
     out.assign(1, slot);
@@ -337,23 +337,23 @@ void RollLattice::slots_with_same_body_poses(int layer, int slot, unsigned group
   for (int& other : out) other = slot_of(slot / width_, other);
 }
 
-PoseErrorBound RollLattice::pose_error_of_node(int layer, int group, const Config& q) const {
+PoseErrorBound KnotGrid::pose_error_of_node(int layer, int group, const Config& q) const {
   return is_approximate()
              ? PoseErrorBound::unknown(at_roll(0).pose_error_of_node(layer, group, q).about)
              : PoseErrorBound{};
 }
 
-PoseErrorBound RollLattice::pose_error_between(int layer, int group, const Config& q) const {
+PoseErrorBound KnotGrid::pose_error_between(int layer, int group, const Config& q) const {
   return pose_error_of_node(layer, group, q);
 }
 
-bool RollLattice::in_window(int layer, int a, int b) const {
+bool KnotGrid::in_window(int layer, int a, int b) const {
   const std::vector<int>& rolls = near(layer, rank_of(layer, a), true);
   return std::binary_search(rolls.begin(), rolls.end(), rank_of(layer + 1, b)) &&
          in_arm_window(layer, a, b);
 }
 
-std::optional<Lattice::RollStep> RollLattice::roll_step(int layer, int a, const Config&, int b,
+std::optional<Lattice::RollStep> KnotGrid::roll_step(int layer, int a, const Config&, int b,
                                                         const Config&) const {
   const std::vector<int>& rolls = near(layer, rank_of(layer, a), true);
   const double change = roll(layer + 1, b) - roll(layer, a);
@@ -362,7 +362,7 @@ std::optional<Lattice::RollStep> RollLattice::roll_step(int layer, int a, const 
                   std::binary_search(rolls.begin(), rolls.end(), rank_of(layer + 1, b))};
 }
 
-bool RollLattice::in_arm_window(int layer, int a, int b) const {
+bool KnotGrid::in_arm_window(int layer, int a, int b) const {
   if (branch(layer, a) != branch(layer + 1, b)) return false;
   const int angles = at_roll(0).angles(), window = phi_window(layer),
             to = at_roll(0).angle_of(inner(layer + 1, b));
@@ -374,7 +374,7 @@ bool RollLattice::in_arm_window(int layer, int a, int b) const {
   return std::min(apart, angles - apart) <= window;
 }
 
-void RollLattice::successors(int layer, int a, std::vector<SlotRun>& out) const {
+void KnotGrid::successors(int layer, int a, std::vector<SlotRun>& out) const {
   out.clear();
   if (given(layer + 1)) {
     if (in_window(layer, a, 0)) out.push_back({0, 1});
@@ -401,7 +401,7 @@ void RollLattice::successors(int layer, int a, std::vector<SlotRun>& out) const 
     }
 }
 
-std::optional<Config> RollLattice::solve(int i, double roll, double phi, int branch,
+std::optional<Config> KnotGrid::solve(int i, double roll, double phi, int branch,
                                          const Config& near, InterpolatedEdge& fault) const {
   const Pose tool = rolled(whole_->layer(i).tool, roll);
   const ArmPlane plane = carry_plane(*arm_, planes_[static_cast<std::size_t>(i)], tool);
@@ -442,12 +442,12 @@ std::optional<Config> RollLattice::solve(int i, double roll, double phi, int bra
   return fault.fault == InterpolatedEdge::Fault::kNone ? std::optional(q) : std::nullopt;
 }
 
-double RollLattice::roll_at(int i, const Config& q, double chosen) const {
+double KnotGrid::roll_at(int i, const Config& q, double chosen) const {
   return last_joint_ ? roll_between(whole_->layer(i).tool, chain_->tool(q)) : chosen;
 }
 
 template <class Visit>
-Lattice::InterpolatedEdge RollLattice::walk(int layer, int a, const Config& qa, int b,
+Lattice::InterpolatedEdge KnotGrid::walk(int layer, int a, const Config& qa, int b,
                                             const Config& qb, const Visit& visit) const {
   InterpolatedEdge interpolated;
   const int first = knots_[static_cast<std::size_t>(layer)],
@@ -503,12 +503,12 @@ Lattice::InterpolatedEdge RollLattice::walk(int layer, int a, const Config& qa, 
   return interpolated;
 }
 
-Lattice::InterpolatedEdge RollLattice::interpolate_edge(int layer, int a, const Config& qa, int b,
+Lattice::InterpolatedEdge KnotGrid::interpolate_edge(int layer, int a, const Config& qa, int b,
                                                         const Config& qb) const {
   return walk(layer, a, qa, b, qb, [](const TrajectoryRow&) {});
 }
 
-LatticeInfo RollLattice::describe() const {
+LatticeInfo KnotGrid::describe() const {
   LatticeInfo info = Lattice::describe();
   const SrsLattice& one = at_roll(0);
   info.grid =
@@ -516,7 +516,7 @@ LatticeInfo RollLattice::describe() const {
   return info;
 }
 
-std::vector<TrajectoryRow> RollLattice::followed(const std::vector<int>& slots) const {
+std::vector<TrajectoryRow> KnotGrid::followed(const std::vector<int>& slots) const {
   std::vector<TrajectoryRow> rows;
   for (int k = 0; k < static_cast<int>(slots.size()); ++k) {
     const int slot = slots[static_cast<std::size_t>(k)];
@@ -538,7 +538,7 @@ std::vector<TrajectoryRow> RollLattice::followed(const std::vector<int>& slots) 
   return rows;
 }
 
-CircleTurns RollLattice::turns_along(const std::vector<TrajectoryRow>& rows,
+CircleTurns KnotGrid::turns_along(const std::vector<TrajectoryRow>& rows,
                                      std::size_t slots) const {
   std::vector<Config> joints;
   for (const TrajectoryRow& row : rows) joints.push_back(row.q);
@@ -546,7 +546,7 @@ CircleTurns RollLattice::turns_along(const std::vector<TrajectoryRow>& rows,
   return circle_turns(*this, circles_, joints, starts_given_, ends ? &*end_ : nullptr);
 }
 
-std::vector<TrajectoryRow> RollLattice::path_rows(const std::vector<int>& slots) const {
+std::vector<TrajectoryRow> KnotGrid::path_rows(const std::vector<int>& slots) const {
   std::vector<TrajectoryRow> rows = followed(slots);
   count_from_waypoints(*chain_, *whole_, rows);
   if (circles_ == Joints{}) return rows;
@@ -556,19 +556,19 @@ std::vector<TrajectoryRow> RollLattice::path_rows(const std::vector<int>& slots)
   return rows;
 }
 
-Lattice::Joints RollLattice::off_limits(const std::vector<int>& slots) const {
+Lattice::Joints KnotGrid::off_limits(const std::vector<int>& slots) const {
   if (circles_ == Joints{}) return {};
   return turns_along(followed(slots), slots.size()).furthest_over();
 }
 
-std::unique_ptr<Lattice> RollLattice::with_windings(const Joints& joints) const {
+std::unique_ptr<Lattice> KnotGrid::with_windings(const Joints& joints) const {
   if (!problem_) return nullptr;
   Joints wound{};
   std::vector<Joints> told_apart = told_apart_;
   told_apart.push_back(joints);
   for (const Joints& told : told_apart)
     for (std::size_t j = 0; j < kDof; ++j) wound[j] = wound[j] || told[j];
-  std::unique_ptr<RollLattice> lattice(new RollLattice(*chain_, *arm_, *whole_, *problem_, {},
+  std::unique_ptr<KnotGrid> lattice(new KnotGrid(*chain_, *arm_, *whole_, *problem_, {},
                                                        knots_along(*whole_, problem_->resolution),
                                                        last_joint_, wound));
   lattice->told_apart_ = std::move(told_apart);

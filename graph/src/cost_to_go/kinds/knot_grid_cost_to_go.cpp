@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cost_to_go/kinds/roll_cost_to_go.hpp"
+#include "cost_to_go/kinds/knot_grid_cost_to_go.hpp"
 
 #include <algorithm>
 
@@ -14,7 +14,7 @@ constexpr std::size_t kMostBytes = std::size_t{1} << 30;  // joints that are kep
 
 }  // namespace
 
-RollCostToGo::RollCostToGo(const RollLattice& lattice, const Budget& budget)
+KnotGridCostToGo::KnotGridCostToGo(const KnotGrid& lattice, const Budget& budget)
     : LayerValues(lattice, budget),
       lattice_(&lattice),
       angles_(lattice.at_roll(0).angles()),
@@ -22,7 +22,7 @@ RollCostToGo::RollCostToGo(const RollLattice& lattice, const Budget& budget)
       pad_(lattice.widest_phi_window()),
       solved_(static_cast<std::size_t>(lattice.layers())) {}
 
-const LayerNodes& RollCostToGo::nodes(int layer, int rank) {
+const LayerNodes& KnotGridCostToGo::nodes(int layer, int rank) {
   Solved& solved = solved_[static_cast<std::size_t>(layer)];
   if (!solved.kept) {
     // The oldest layers make room, except the two that are being joined.
@@ -44,7 +44,7 @@ const LayerNodes& RollCostToGo::nodes(int layer, int rank) {
   return nodes;
 }
 
-void RollCostToGo::forget(int layer) {
+void KnotGridCostToGo::forget(int layer) {
   Solved& solved = solved_[static_cast<std::size_t>(layer)];
   if (!solved.kept) return;
   for (std::size_t r = 0; r < solved.done.size(); ++r)
@@ -54,14 +54,14 @@ void RollCostToGo::forget(int layer) {
   std::erase(kept_, layer);
 }
 
-Config RollCostToGo::config(int layer, int slot) {
+Config KnotGridCostToGo::config(int layer, int slot) {
   if (lattice_->is_given(layer)) return *lattice_->node(layer, 0);
   const int inner = lattice_->inner(layer, slot);
   return nodes(layer, lattice_->rank_of(layer, slot))
       .config(inner / angles_, pad_ + inner % angles_);
 }
 
-void RollCostToGo::take_around(const Values& values) {
+void KnotGridCostToGo::take_around(const Values& values) {
   const int length = angles_ + 2 * pad_, rows = lattice_->rolls() * solutions_;
   around_.value.assign(static_cast<std::size_t>(rows) * static_cast<std::size_t>(length),
                        kUnreachable);
@@ -83,7 +83,7 @@ void RollCostToGo::take_around(const Values& values) {
 
 /// Finds runs of nodes that exist; short gaps are included, since a call takes as long as some
 /// eight nodes.
-void RollCostToGo::runs_of(const LayerNodes& nodes, int solution) {
+void KnotGridCostToGo::runs_of(const LayerNodes& nodes, int solution) {
   constexpr int kGap = 8;
   runs_.clear();
   for (int j = 0; j < angles_; ++j) {
@@ -96,7 +96,7 @@ void RollCostToGo::runs_of(const LayerNodes& nodes, int solution) {
 }
 
 template <class Visit>
-void RollCostToGo::each_beside_given(int step, int layer, int other, const Visit& visit) {
+void KnotGridCostToGo::each_beside_given(int step, int layer, int other, const Visit& visit) {
   if (other < layer) {
     std::vector<Lattice::SlotRun> runs;
     lattice_->successors(step, 0, runs);
@@ -109,7 +109,7 @@ void RollCostToGo::each_beside_given(int step, int layer, int other, const Visit
       if (const int a = lattice_->slot_of(rank, inner); lattice_->in_window(step, a, 0)) visit(a);
 }
 
-void RollCostToGo::relax(int step, int layer, int other, const Values& others, Values& out) {
+void KnotGridCostToGo::relax(int step, int layer, int other, const Values& others, Values& out) {
   out.assign(static_cast<std::size_t>(lattice_->slots(layer)), kUnreachable);
   const auto relax_alone = [&](int slot) {
     if (lattice_->node(layer, slot))
@@ -161,7 +161,7 @@ void RollCostToGo::relax(int step, int layer, int other, const Values& others, V
 }
 
 template <class Worth, class Visit>
-void RollCostToGo::each_near(int step, int layer, int slot, int other, const Worth& worth,
+void KnotGridCostToGo::each_near(int step, int layer, int slot, int other, const Worth& worth,
                              const Visit& visit) {
   if (lattice_->is_given(other)) {
     const bool joined =
@@ -192,7 +192,7 @@ void RollCostToGo::each_near(int step, int layer, int slot, int other, const Wor
   }
 }
 
-double RollCostToGo::relax_one(int layer, int slot) {
+double KnotGridCostToGo::relax_one(int layer, int slot) {
   if (removed(layer, slot)) return kUnreachable;
   const Config q = config(layer, slot);
   double best = kUnreachable;
@@ -208,7 +208,7 @@ double RollCostToGo::relax_one(int layer, int slot) {
   return best;
 }
 
-double RollCostToGo::relax_one_forward(int layer, int slot, const Values& before) {
+double KnotGridCostToGo::relax_one_forward(int layer, int slot, const Values& before) {
   const Config q = config(layer, slot);
   double best = kUnreachable;
   each_near(
@@ -224,7 +224,7 @@ double RollCostToGo::relax_one_forward(int layer, int slot, const Values& before
   return best;
 }
 
-void RollCostToGo::begin(int layer, Values& out) {
+void KnotGridCostToGo::begin(int layer, Values& out) {
   out.assign(static_cast<std::size_t>(lattice_->slots(layer)), kUnreachable);
   if (lattice_->is_given(layer)) {
     if (lattice_->node(layer, 0)) out[0] = 0;
@@ -239,13 +239,13 @@ void RollCostToGo::begin(int layer, Values& out) {
   }
 }
 
-std::size_t RollCostToGo::many(int layer) const {
+std::size_t KnotGridCostToGo::many(int layer) const {
   static_cast<void>(layer);
   constexpr std::size_t kMany = 256;
   return kMany;
 }
 
-void RollCostToGo::find_stale(int layer, const std::vector<Change>& ahead,
+void KnotGridCostToGo::find_stale(int layer, const std::vector<Change>& ahead,
                               std::vector<int>& stale) {
   const Values& values = value_[static_cast<std::size_t>(layer)];
   const double* own = verdicts_.costs(layer);
@@ -266,7 +266,7 @@ void RollCostToGo::find_stale(int layer, const std::vector<Change>& ahead,
   }
 }
 
-void RollCostToGo::steps(int layer, int slot, double bound, std::vector<Step>& out) {
+void KnotGridCostToGo::steps(int layer, int slot, double bound, std::vector<Step>& out) {
   const Config q = config(layer, slot);
   const double own = verdicts_.cost(layer, slot);
   out.clear();

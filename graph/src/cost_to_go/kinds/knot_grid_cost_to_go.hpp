@@ -5,18 +5,18 @@
 #include <vector>
 
 #include "cost_to_go/kinds/layer_values.hpp"
-#include "swivel/core/lattice/kinds/roll_lattice.hpp"
+#include "swivel/core/lattice/kinds/knot_grid.hpp"
 
 namespace swivel {
 
 /// The cost-to-go of a grid of rolls and arm angles, in vector code: the circle of arm angles of
 /// each roll and IK solution against those of the rolls nearby, of the same branch. Memory: 9 bytes
 /// a node, and some 40 bytes for the joints of each node of the layers that are kept.
-class RollCostToGo final : public LayerValues {
+class KnotGridCostToGo final : public LayerValues {
  public:
-  explicit RollCostToGo(const RollLattice& lattice, const Budget& budget = {});
+  explicit KnotGridCostToGo(const KnotGrid& lattice, const Budget& budget = {});
 
-  [[nodiscard]] const RollLattice& lattice() const override { return *lattice_; }
+  [[nodiscard]] const KnotGrid& lattice() const override { return *lattice_; }
   [[nodiscard]] Config config(int layer, int slot) override;
   void steps(int layer, int slot, double bound, std::vector<Step>& out) override;
 
@@ -52,7 +52,7 @@ class RollCostToGo final : public LayerValues {
   template <class Worth, class Visit>
   void each_near(int step, int layer, int slot, int other, const Worth& worth, const Visit& visit);
 
-  const RollLattice* lattice_;
+  const KnotGrid* lattice_;
   int angles_, solutions_, pad_;
   Around around_;
   std::vector<std::pair<int, int>> runs_;  // runs of arm angles: first, and behind the last
