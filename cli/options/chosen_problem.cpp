@@ -14,8 +14,7 @@ Problem chosen_problem(const Problem& problem, const LatticeOptions& lattice,
   Problem chosen = episode.apply(problem);
   for (ArmTask& arm : chosen.arms)
     for (Stroke& stroke : arm.strokes) lattice.apply(stroke);
-  if (!lattice.dphi && !lattice.arcs.value_or(false) && !(lattice.knot.value_or(0) > 0))
-    return chosen;
+  if (!lattice.dphi && !lattice.arcs.value_or(false)) return chosen;
   std::vector<UnusedKey> unused = unused_keys_of(chosen.arm(), chosen.source);
   if (chosen.arms.size() == 2)
     unused = unused_by_both(unused, unused_keys_of(chosen.arms[1], chosen.source));

@@ -76,9 +76,8 @@ void LatticeOptions::require_used(const std::vector<UnusedKey>& unused) const {
   for (const UnusedKey& key : unused) {
     const std::string option = key.key == "dphi" && dphi   ? "--dphi"
                                : key.key == "arcs" && arcs ? "--arcs"
-                               : key.key == "knot" && knot ? "--knot"
                                                            : "";
-    if (!option.empty() && (key.key != "arcs" || *arcs) && (key.key != "knot" || *knot > 0))
+    if (!option.empty() && (key.key != "arcs" || *arcs))
       throw InputError(option + ": is given, but " + key.why +
                        ": allowed is no such option for this arm");
   }

@@ -296,7 +296,6 @@ const Case kCases[] = {
      "{ds: 0.01,\n  arc: 0.1}",
      {"problem.yaml:3: resolution.arc", "S-R-S", "no such key"}},
     {"RollStepWithoutRoll", "resolution", "{droll: 0.1}", {"resolution.droll", "no roll", "free"}},
-    {"KnotWithoutRoll", "resolution", "{knot: 0.1}", {"resolution.knot", "no roll", "free"}},
     {"RollSlopeWithoutRoll", "limits", "{roll_slope: 9}", {"limits.roll_slope", "no roll is free"}},
     {"NumberInQuotes", "resolution", "{ds: \"0.01\"}", {"resolution.ds", "'0.01', in quotes"}},
     {"NumbersInQuotes",

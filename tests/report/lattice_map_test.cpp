@@ -134,9 +134,9 @@ void check_states_of_rolls(PanelOfRolls& panel) {
   std::printf("%s: %d free, %d blocked, %d beyond a limit, %d none\n",
               windows ? "windows" : "all rolls", count[NodeState::kFree],
               count[NodeState::kBlocked], count[NodeState::kJointLimit], count[NodeState::kNoIk]);
-  EXPECT_GT(count[NodeState::kFree], 50);
-  EXPECT_GT(count[NodeState::kBlocked] + count[NodeState::kJointLimit], windows ? 0 : 50);
-  EXPECT_EQ(count[NodeState::kNoIk] > 50, windows);
+  EXPECT_GT(count[NodeState::kFree], 20);
+  EXPECT_GT(count[NodeState::kBlocked] + count[NodeState::kJointLimit], windows ? 0 : 20);
+  EXPECT_EQ(count[NodeState::kNoIk] > 20, windows);
   const std::string name = map.solution_name(map.solutions());
   EXPECT_NE(to_text(map, 80, false).find(name), std::string::npos);
   EXPECT_NE(to_svg(map).find(name), std::string::npos);

@@ -98,8 +98,10 @@ class PlainLattice {
     return lattice_.has_layers_between() ? edge_of_layers(i, a, b) : edge_of_layer(i, a, b);
   }
   /// Returns the cost of the edge between two valid nodes of a lattice with layers between, whether
-  /// or not what lies between is valid; none if the nodes are too far apart.
+  /// or not what lies between is valid; none if they may not be joined, or are too far apart.
   [[nodiscard]] std::optional<double> chord(std::size_t i, std::size_t a, std::size_t b) const {
+    if (!in_window_(static_cast<int>(i), static_cast<int>(a), static_cast<int>(b)))
+      return std::nullopt;
     const Config delta = lattice_.delta(*nodes_[i][a], *nodes_[i + 1][b]);
     for (int j = 0; j < kDof; ++j)
       if (std::abs(delta[j]) > lattice_.step_bound(static_cast<int>(i))[j]) return std::nullopt;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Random problems of arms along arcs whose lattices have knots.
+// Random problems whose lattices have knots.
 #pragma once
 #include <cmath>
 #include <limits>
@@ -18,9 +18,9 @@ inline constexpr double kNone = std::numeric_limits<double>::infinity();
 /// Arms whose joints turn less than once, or for ever, so that no lattice tells turns apart.
 inline std::vector<TestRobot> arms_of_one_turn() {
   std::vector<TestRobot> robots;
-  for (const char* const name : {"panda_like", "gen3_like", "fetch_like"}) {
+  for (const char* const name : {"panda_like", "gen3_like", "fetch_like", "iiwa14"}) {
     robots.push_back(data_robot(name));
-    robots.back().tip_link = "flange";
+    if (robots.back().name != "iiwa14") robots.back().tip_link = "flange";
   }
   return robots;
 }
@@ -30,7 +30,10 @@ inline PathProblem random_task(const TestRobot& robot, Random& random) {
   PathProblem problem = random_problem(robot, random);
   problem.limits.step_error.reset();
   problem.limits.arm_slope = Limits().arm_slope;
-  problem.resolution.arc = random.uniform(0.3, 0.6);
+  if (has_arm_angle(robot))
+    problem.resolution.dphi = random.uniform(0.7, 1.2);
+  else
+    problem.resolution.arc = random.uniform(0.3, 0.6);
   problem.limits.joint_step = random.uniform(0.08, 0.4);
   problem.limits.tool_path_error = std::exp(random.uniform(std::log(2e-4), std::log(2e-2)));
   problem.waypoints.resize(2);

@@ -193,14 +193,14 @@ inline bool has_arm_angle(const TestRobot& robot) {
   }
 }
 
-/// Returns an empty problem of the robot. Arms without an arm angle have nodes at every layer.
+/// Returns an empty problem of the robot, with nodes at every layer.
 inline PathProblem problem_for(const TestRobot& robot) {
   PathProblem problem;
   problem.source = robot.name;
   problem.model = robot.model;
   problem.base_link = problem.path_frame = robot.base_link;
   problem.tip_link = robot.tip_link;
-  if (!has_arm_angle(robot)) problem.resolution.knot = 0;
+  problem.resolution.knot = 0;
   return problem;
 }
 

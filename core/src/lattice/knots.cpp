@@ -12,8 +12,9 @@ namespace swivel {
 
 namespace {
 
-constexpr double kBend = 0.35;       // rad between two directions of the path
-constexpr double kOnTheSpot = 1e-9;  // m: a shorter step only turns the tool, by however little
+constexpr double kTurnOfKnots = 0.2;  // rad: how far the path may turn from a knot to the next
+constexpr double kBend = 0.35;        // rad between two directions of the path
+constexpr double kOnTheSpot = 1e-9;   // m: a shorter step only turns the tool, by however little
 
 /// Returns whether the path bends at a layer, neither the first nor the last: its direction
 /// changes, that of a turn on the spot being its axis, or such a turn begins or ends.
@@ -33,10 +34,10 @@ bool bends_at(const ToolPath& path, int layer) {
 
 }  // namespace
 
-std::vector<int> knots_along(const ToolPath& path, const KnotSpacing& most) {
+std::vector<int> knots_along(const ToolPath& path, double length) {
   const int last = path.size() - 1;
   std::vector<int> knots{0};
-  if (most.length <= 0) {
+  if (length <= 0) {
     knots.resize(static_cast<std::size_t>(path.size()));
     std::iota(knots.begin(), knots.end(), 0);
     return knots;
@@ -46,10 +47,10 @@ std::vector<int> knots_along(const ToolPath& path, const KnotSpacing& most) {
     std::vector<double> way{0};
     int end = begin;
     do {
-      way.push_back(way.back() + std::max(path.layer(end).step_length / most.length,
-                                          path.layer(end).step_angle / most.angle));
+      way.push_back(way.back() + std::max(path.layer(end).step_length / length,
+                                          path.layer(end).step_angle / kTurnOfKnots));
       ++end;
-    } while (end < last && !(most.at_bends && bends_at(path, end)));
+    } while (end < last && !bends_at(path, end));
     const double steps = std::max(1.0, std::ceil(way.back() - 1e-9)), step = way.back() / steps;
     for (double goal = 1; knots.back() < end; ++goal) {
       const auto reached = static_cast<int>(
@@ -59,6 +60,26 @@ std::vector<int> knots_along(const ToolPath& path, const KnotSpacing& most) {
     begin = end;
   }
   return knots;
+}
+
+int middle_layer(const ToolPath& path, int first, int last) {
+  const double middle = (path.layer(first).travel + path.layer(last).travel) / 2;
+  int nearest = first + 1;
+  for (int i = first + 2; i < last; ++i)
+    if (std::abs(path.layer(i).travel - middle) < std::abs(path.layer(nearest).travel - middle))
+      nearest = i;
+  return nearest;
+}
+
+std::vector<int> halved(const ToolPath& path, const std::vector<int>& knots,
+                        const std::set<int>& steps) {
+  std::vector<int> finer;
+  for (std::size_t k = 0; k < knots.size(); ++k) {
+    finer.push_back(knots[k]);
+    if (steps.count(static_cast<int>(k)) > 0 && k + 1 < knots.size() && knots[k + 1] - knots[k] > 1)
+      finer.push_back(middle_layer(path, knots[k], knots[k + 1]));
+  }
+  return finer;
 }
 
 std::vector<Config> bounds_between_knots(const std::vector<int>& knots,

@@ -207,10 +207,7 @@ void read_layout(const Reader& read, const Parsed& json, const std::string& key,
   resolution.dphi = real("dphi");
   resolution.dalpha = real("dalpha");
   if (steps.contains("arc")) resolution.arc = real("arc");
-  if (steps.contains("knot"))
-    resolution.knot = real("knot");
-  else if (resolution.arc)
-    resolution.knot = 0;
+  resolution.knot = steps.contains("knot") ? real("knot") : 0;
   resolution.arcs = read.truth(read.at(steps, "arcs", within), within + "arcs");
   const std::string edges = read.text(read.at(json, "edges", key), key + "edges");
   if (edges != "continuous" && edges != "nodes")

@@ -137,8 +137,8 @@ Schema lattice() {
           key_of_some("arcs", integer(), "of self-motion, in all layers, of other arms"),
           key_of_some("knot_bound", or_null(number()),
                       "no path through nodes of these layers costs less, whatever layers between "
-                      "have nodes besides; `null` where nodes have costs, or where there is none; "
-                      "of arms without an arm angle with `resolution.knot`"),
+                      "have nodes besides; `null` where nodes have costs or are only near their "
+                      "rows, or where there is none; of lattices with `resolution.knot`"),
           key_of_some(
               "knot_gap", or_null(number()),
               "by what share of `knot_bound` the rows of the lattice's path cost more; those of a "
@@ -146,7 +146,8 @@ Schema lattice() {
           key_of_some(
               "bias", or_null(number()),
               "an estimate: by what share at most the lattice's path is dearer than one whose "
-              "redundancy changes by any slope; `null` where the metric is not `l2`"),
+              "redundancy changes by any slope; `null` where the metric is not `l2`, and with "
+              "rolls of arms of seven joints"),
           key_of_some("halved", boolean(),
                       "whether knots were added wherever that might have been worth it; `false`: "
                       "time was up before"),

@@ -333,7 +333,8 @@ InfeasibilityCertificate prove_infeasible(const PlanView& view, const Budget& bu
   InfeasibilityCertificate certificate =
       find_cut(view.lattice, view.world, view.world.edge_rule(view.robot.radii()),
                own ? own->verdicts() : *view.verdicts, {}, check, budget);
-  certificate.resolution = resolution_in_effect(view.resolution, view.robot.arm_class());
+  certificate.resolution =
+      resolution_in_effect(view.resolution, view.problem, view.robot.arm_class());
   certificate.edges = view.problem.limits.edges;
   certificate.windings = view.lattice.joints_with_windings();
   certificate.halvings = view.lattice.halvings();

@@ -238,8 +238,8 @@ void require_same_layout(const PathProblem& problem, const ArmClass& arm,
           std::string(what) +
               " is another than the certificate's: allowed is what it was planned with");
   };
-  const Resolution own = resolution_in_effect(problem.resolution, arm),
-                   other = resolution_in_effect(*stated.resolution, arm);
+  const Resolution own = resolution_in_effect(problem.resolution, problem, arm),
+                   other = resolution_in_effect(*stated.resolution, problem, arm);
   require(own.ds == other.ds, "resolution.ds (--ds)");
   require(own.dphi == other.dphi, "resolution.dphi (--dphi)");
   require(own.dalpha == other.dalpha, "resolution.dalpha");

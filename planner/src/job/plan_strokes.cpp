@@ -366,10 +366,11 @@ class JobPlan {
       add_lines(unused_key_warnings(unused_keys(chain_, robot_.arm_class()), run->problem),
                 result_.warnings);
       if (!run->lattice->has_layers_between())
-        add_lines(unused_key_warnings(unused_knot(robot_.arm_class(),
-                                                  hooks_.cost ? "jobs whose states cost something"
-                                                              : "strokes in several runs"),
-                                      problem_of_run(job_, run->run)),
+        add_lines(unused_key_warnings(
+                      unused_knot(hooks_.cost ? "jobs whose states cost something"
+                                  : run->problem.limits.step_error ? "paths with limits.step_error"
+                                                                   : "strokes in several runs"),
+                      problem_of_run(job_, run->run)),
                   result_.warnings);
       add_lines(path_warnings(robot_, run->problem, run->path, *run->world), result_.warnings);
       pairs.add(*run->world);

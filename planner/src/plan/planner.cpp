@@ -296,10 +296,11 @@ struct Planner::Impl {
     result.warnings = *of_robot;
     for (const auto& lines :
          {unused_key_warnings(unused_keys(robot->arm().chain, robot->arm_class()), problem),
-          hooks.cost
-              ? unused_key_warnings(
-                    unused_knot(robot->arm_class(), "paths whose states cost something"), problem)
-              : std::vector<std::string>(),
+          layout->first.lattice->has_layers_between()
+              ? std::vector<std::string>()
+              : unused_key_warnings(unused_knot(hooks.cost ? "paths whose states cost something"
+                                                           : "paths with limits.step_error"),
+                                    problem),
           path_warnings(*robot, problem, layout->path, *world)})
       result.warnings.insert(result.warnings.end(), lines.begin(), lines.end());
     SpecialPairs pairs;

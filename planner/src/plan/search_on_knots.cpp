@@ -74,7 +74,8 @@ class Levels {
     FoundOnKnots on_knots;
     if (level_of_best_ > 0) on_knots.finer = std::move(finer_[level_of_best_ - 1]);
     const Lattice& lattice = on_knots.finer ? *on_knots.finer->lattice : *first_.lattice;
-    if (knots_.bound != kUnreachable && !lattice.has_node_costs() && !options_.hooks.cost)
+    if (knots_.bound != kUnreachable && !lattice.has_node_costs() && !lattice.is_approximate() &&
+        !options_.hooks.cost)
       told_.bound = knots_.bound;
     on_knots.knots = told_;
     on_knots.found = std::move(best_);
@@ -145,8 +146,9 @@ class Levels {
 /// an estimate, the mean of min(r² / 8 c², √2 - 1) over the drift of the path's steps. A step of
 /// travel L moves the joints by c L across the self-motion, and along it by multiples of about r L,
 /// as far as nodes lie apart (docs/theory.md "As the resolution goes to zero"). c and r are in
-/// units of the metric for each metre.
-double bias_of_slopes(const Lattice& lattice, const std::vector<int>& path, double arc) {
+/// units of the metric for each metre. Nodes lie 1.5 `arc` apart, or, on a `grid`, as far as the
+/// next arm angle is.
+double bias_of_slopes(const Lattice& lattice, const std::vector<int>& path, double arc, bool grid) {
   constexpr double kMostApart = 1.5, kLeastWeight = 1e-2;  // of `arc`; of the largest weight
   const Eigen::Map<const Eigen::Vector<double, kDof>> weights(lattice.cost_scale().data());
   double drift = 0, excess = 0;
@@ -169,7 +171,13 @@ double bias_of_slopes(const Lattice& lattice, const std::vector<int>& path, doub
       across -= self.dot(across) / squared * self;
     const double c = across.norm() / length;
     if (c == 0) continue;
-    const double r = kMostApart * arc / length * self.norm() / std::sqrt(distance);
+    double r = kMostApart * arc / length * self.norm() / std::sqrt(distance);
+    if (grid) {
+      const int beside = lattice.neighbour_in_redundancy(step, path[k], 1);
+      const auto next = beside < 0 ? std::nullopt : lattice.node(step, beside);
+      if (!next) continue;
+      r = lattice.edge_cost(lattice.delta(q, *next)) / length;
+    }
     drift += c * length;
     excess += c * length * std::min(r * r / (8 * c * c), std::numbers::sqrt2 - 1);
   }
@@ -208,7 +216,8 @@ void describe_knots(double cost, const Lattice& lattice, const std::vector<int>&
   auto& knots = info.knots;
   if (!knots) return;
   if (knots->bound) knots->gap = *knots->bound > 0 ? std::max(0.0, cost / *knots->bound - 1) : 0;
-  if (lattice.cost().metric == CostMetric::kL2) knots->bias = bias_of_slopes(lattice, path, arc);
+  if (lattice.cost().metric == CostMetric::kL2 && !lattice.chain().free_roll)
+    knots->bias = bias_of_slopes(lattice, path, arc, info.grid.has_value());
 }
 
 FoundOnKnots search_on_knots(Searched& first, const SearchLattice& search,

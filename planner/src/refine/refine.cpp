@@ -12,6 +12,7 @@
 #include "refine/strided_solver.hpp"
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/base/angle.hpp"
+#include "swivel/core/lattice/kinds/knot_grid.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
@@ -546,13 +547,15 @@ std::vector<std::vector<TrajectoryRow>> other_basins(const PreparedRobot& robot,
                                                      double to_beat, const Budget& budget) {
   constexpr double kAngle = 0.03;  // rad
   const auto* grid = dynamic_cast<const SrsLattice*>(&lattice);
-  if (grid == nullptr) return {};
+  const Chain& chain = robot.arm().chain;
+  // A grid at knots is that of arm angles alone where no roll is free.
+  if (grid == nullptr && (chain.free_roll || dynamic_cast<const KnotGrid*>(&lattice) == nullptr))
+    return {};
   PathProblem coarse = problem;
   coarse.resolution.dphi = kAngle;
   coarse.resolution.arcs = false;
-  const Chain& chain = robot.arm().chain;
   const auto angles =
-      grid->last_joint()
+      grid && grid->last_joint()
           ? make_coaxial_redundancy(chain, robot.srs(), path, coarse, *grid->last_joint(), budget)
           : make_redundancy(chain, robot.arm_class(), path, coarse, budget);
   return basin_seeds(dynamic_cast<const SrsLattice&>(angles->lattice()), *angles, objective,

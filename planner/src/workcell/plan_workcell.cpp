@@ -158,7 +158,7 @@ class WorkcellPlan {
       unused[k] = unused_keys(arms_[k]->robot.arm().chain, arms_[k]->robot.arm_class());
     const auto keys = unused_by_both(unused[0], unused[1]);
     for (std::size_t k = 0; k < 2; ++k)
-      for (const auto& vain : {keys, unused_knot(arms_[k]->robot.arm_class(), "arms of two")})
+      for (const auto& vain : {keys, unused_knot("arms of two")})
         add_lines(unused_key_warnings(vain, arms_[k]->problem), result_.arms[k].warnings);
   }
   void describe(const PlannedArm& arm, ArmAnswer& result) const {

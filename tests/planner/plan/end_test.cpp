@@ -10,15 +10,17 @@
 
 #include "brute_force.hpp"
 #include "diagnosis_of.hpp"
+#include "grid_windows.hpp"
 #include "inexact_robots.hpp"
+#include "knot_search.hpp"
 #include "motion_problem.hpp"
 #include "planners.hpp"
 #include "random_problem.hpp"
 #include "roll_windows.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/lattice/kinds/arc_lattice.hpp"
-#include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/lattice/kinds/knot_grid.hpp"
+#include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
@@ -170,27 +172,6 @@ struct Truth {
   BruteForcePath answer;
 };
 
-/// Says by the definition whether nodes of a lattice of rolls may be joined on the last step, which
-/// leads to the given end: by the arm angles of their cells, and by the roll itself.
-bool may_end(const KnotGrid& lattice, const Limits& limits, const Resolution& resolution,
-             int a) {
-  const int step = lattice.layers() - 2;
-  if (lattice.branch(step, a) != lattice.branch(step + 1, 0)) return false;
-  const double way = lattice.path().layer(step + 1).travel - lattice.path().layer(step).travel;
-  const double turn = lattice.roll(step + 1, 0) - lattice.roll(step, a);
-  const bool circle = lattice.chain().free_roll->circle();
-  if (std::abs(circle ? std::remainder(turn, kTwoPi) : turn) > limits.roll_slope * way + 1e-9)
-    return false;
-  const double cell = kTwoPi / lattice.at_roll(0).angles();
-  const auto near = [&](int layer, int slot) {
-    const double phi = lattice.phi(layer, slot);
-    return layer == 0 && lattice.is_given(0) ? phi : cell * std::round((phi + kPi) / cell) - kPi;
-  };
-  const double cells = std::max(1.0, std::floor(limits.arm_slope * way / resolution.dphi + 1e-9));
-  return std::abs(std::remainder(near(step + 1, 0) - near(step, a), kTwoPi)) <=
-         std::min(cells * cell, kPi) + 1e-9;
-}
-
 Truth truth_of(const PreparedRobot& robot, const ToolPath& path, const PathProblem& problem,
                Nodes nodes) {
   const Chain& chain = robot.arm().chain;
@@ -205,13 +186,16 @@ Truth truth_of(const PreparedRobot& robot, const ToolPath& path, const PathProbl
         *lattice, [&](int layer, int a, int b) { return window_allows(*lattice, layer, a, b); });
     truth.lattice = std::move(lattice);
   } else if (nodes == Nodes::kRolls) {
-    auto lattice = KnotGrid::make(chain, robot.srs(), path, problem);
-    truth.answer = answer(*lattice, [&](int layer, int a, int b) {
-      return layer + 2 == lattice->layers()
-                 ? may_end(*lattice, problem.limits, problem.resolution, a)
-                 : lattice->in_window(layer, a, b);
-    });
-    truth.lattice = std::move(lattice);
+    const JoinableOnGrid joinable(problem);
+    PlainAnswer found =
+        plan_plainly(robot, problem, KnotGrid::make(chain, robot.srs(), path, problem),
+                     [&](const Lattice& lattice, int layer, int a, int b) {
+                       return joinable(dynamic_cast<const KnotGrid&>(lattice), layer, a, b);
+                     });
+    truth.answer.solved = !found.rows.empty();
+    truth.answer.cost = found.chords;
+    truth.answer.deepest = found.deepest;
+    truth.lattice = std::move(found.last);
   } else {
     const ArcLattice circles(chain, robot.arm_class().lock, path, problem);
     truth.lattice = circles.with_windings(circles.circles());

@@ -8,15 +8,17 @@
 
 #include "brute_force.hpp"
 #include "diagnosis_of.hpp"
+#include "grid_windows.hpp"
 #include "inexact_robots.hpp"
+#include "knot_search.hpp"
 #include "planners.hpp"
 #include "random_problem.hpp"
 #include "roll_windows.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/kinematics/srs/arm_angle.hpp"
-#include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/lattice/kinds/knot_grid.hpp"
+#include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/graph/cost_to_go/cost_to_go.hpp"
@@ -113,100 +115,47 @@ void expect_rows_on_path(const PreparedRobot& robot, const PathProblem& problem,
 struct Counts {
   int solved = 0, infeasible = 0, started = 0, continuous = 0, obstacles = 0, circles = 0,
       inexact = 0, turned = 0, between = 0;
-  int at_rest = 0, moved_after_all = 0, windows = 0, costly = 0;
+  int at_rest = 0, moved_after_all = 0, windows = 0, costly = 0, halved = 0;
 };
 
-/// Says by the definition which nodes of neighbouring layers may be joined.
-class Joinable {
- public:
-  Joinable(const KnotGrid& lattice, const ToolPath& path, const PathProblem& problem)
-      : lattice_(lattice), path_(path), problem_(problem) {}
-
-  // Own words for what may follow what: cells on circles.
-  bool operator()(int layer, int a, int b) const {
-    if (lattice_.branch(layer, a) != lattice_.branch(layer + 1, b)) return false;
-    const double way = path_.layer(lattice_.knots()[static_cast<std::size_t>(layer) + 1]).travel -
-                       path_.layer(lattice_.knots()[static_cast<std::size_t>(layer)]).travel;
-    if (!arm_angles_may_follow(layer, a, b, way)) return false;
-    if (problem_.waypoints[0].roll)  // parts of what each layer allows
-      return std::abs(lattice_.roll(layer, a) - lattice_.roll(layer + 1, b)) <=
-             problem_.limits.roll_slope * way + 1e-9;
-    return rolls_may_follow(layer, a, b, way);
-  }
-
- private:
-  bool arm_angles_may_follow(int layer, int a, int b, double way) const {
-    const double phi_cell = kTwoPi / std::ceil(kTwoPi / problem_.resolution.dphi - 1e-9);
-    const double most =
-        std::max(1.0,
-                 std::floor(problem_.limits.arm_slope * way / problem_.resolution.dphi + 1e-9)) *
-        phi_cell;
-    const auto grid = [&](int at, int slot) {  // moved cells count by their own grid angle
-      return at == 0 && problem_.start
-                 ? lattice_.phi(0, slot)
-                 : -kPi + phi_cell * lattice_.at_roll(0).angle_of(lattice_.inner(at, slot));
-    };
-    return !(std::abs(wrap_angle(grid(layer + 1, b) - grid(layer, a))) >
-             std::min(most, kPi) + 1e-9);
-  }
-  // Rolls: by how many values they are apart, in order.
-  bool rolls_may_follow(int layer, int a, int b, double way) const {
-    std::vector<double> values;
-    for (int rank = 0; rank < lattice_.rolls(); ++rank)
-      values.push_back(lattice_.roll_of_rank(layer, rank));
-    std::sort(values.begin(), values.end());
-    const auto place = [&](int at, int slot) {
-      return static_cast<int>(std::find(values.begin(), values.end(), lattice_.roll(at, slot)) -
-                              values.begin());
-    };
-    int apart = std::abs(place(layer, a) - place(layer + 1, b));
-    const int n = static_cast<int>(values.size());
-    const bool circle = problem_.roll->upper - problem_.roll->lower >= kTwoPi - 1e-9;
-    if (circle) apart = std::min(apart, n - apart);
-    const double cells =
-        std::floor(problem_.limits.roll_slope * way / problem_.resolution.droll + 1e-9);
-    return apart <= std::min(cells, circle ? (n - 1) / 2 : n - 1.0);
-  }
-
-  const KnotGrid& lattice_;
-  const ToolPath& path_;
-  const PathProblem& problem_;
-};
-
-/// Holds a lattice of one problem and its answer by brute force.
+/// Holds a lattice of one problem and its answer by plain searches.
 struct Truth {
-  std::unique_ptr<const KnotGrid> lattice;
-  BruteForcePath answer;
+  std::unique_ptr<const KnotGrid> lattice;  // the first one
+  PlainAnswer answer;
+  [[nodiscard]] bool solved() const { return !answer.rows.empty(); }
 };
 
-/// Plans by brute force: with joint 7 at rest where that is enough, else with all rolls.
+/// Plans by plain searches: with joint 7 at rest where that is enough, else with all rolls.
 Truth truth_of(const PreparedRobot& robot, const ToolPath& path, const PathProblem& problem,
                Counts& counts) {
   const Chain& chain = robot.arm().chain;
-  const EdgeRule rule = robot.world().edge_rule(robot.radii());
-  const auto answer_on = [&](const KnotGrid& lattice) {
-    return brute_force(lattice, robot.world(), rule, Joinable(lattice, path, problem));
+  const JoinableOnGrid joinable(problem);
+  const auto on = [&](const std::optional<double>& rest) {
+    Truth truth;
+    truth.lattice = KnotGrid::make(chain, robot.srs(), path, problem, {}, rest);
+    truth.answer =
+        plan_plainly(robot, problem, KnotGrid::make(chain, robot.srs(), path, problem, {}, rest),
+                     [&](const Lattice& lattice, int layer, int a, int b) {
+                       return joinable(dynamic_cast<const KnotGrid&>(lattice), layer, a, b);
+                     });
+    return truth;
   };
   // Joint 7 at rest where that is enough.
   const std::optional<double> rest = last_joint_at_rest(chain, robot.arm_class(), problem);
-  const bool coaxial = rest.has_value();
-  Truth truth;
-  truth.lattice = KnotGrid::make(chain, robot.srs(), path, problem, {}, rest);
-  truth.answer = answer_on(*truth.lattice);
-  counts.at_rest += coaxial && truth.answer.solved;
-  if (coaxial && !truth.answer.solved) {
-    truth.lattice = KnotGrid::make(chain, robot.srs(), path, problem);
-    truth.answer = answer_on(*truth.lattice);
-    counts.moved_after_all += truth.answer.solved;
+  Truth truth = on(rest);
+  counts.at_rest += rest && truth.solved();
+  if (rest && !truth.solved()) {
+    truth = on({});
+    counts.moved_after_all += truth.solved();
   }
+  counts.halved += truth.answer.halvings > 0;
   return truth;
 }
 
 /// Checks a planner's answer, with its rows and reasons, against the first planner's.
 void expect_same_answer(const PlanResult& result, const PlanResult& first, const Truth& truth,
                         const std::string& what) {
-  ASSERT_EQ(result.status == PlanStatus::kSolved, truth.answer.solved)
-      << what << ' ' << result.planner;
+  ASSERT_EQ(result.status == PlanStatus::kSolved, truth.solved()) << what << ' ' << result.planner;
   ASSERT_TRUE(result.lattice.grid && result.lattice.grid->rolls == truth.lattice->rolls()) << what;
   ASSERT_EQ(result.cost, first.cost) << what << ' ' << result.planner;
   ASSERT_EQ(result.trajectory.size(), first.trajectory.size()) << what;
@@ -221,7 +170,8 @@ void expect_same_answer(const PlanResult& result, const PlanResult& first, const
 /// Checks the cost and the rows of a path, and counts what it has.
 void expect_path(const PreparedRobot& robot, const PathProblem& problem, const PlanResult& result,
                  const Truth& truth, const std::string& what, Counts& counts) {
-  ASSERT_EQ(result.lattice.cost, truth.answer.cost) << what;
+  ASSERT_NEAR(result.lattice.cost, truth.answer.chords, 1e-9) << what;
+  ASSERT_NEAR(result.cost, truth.answer.cost, 1e-9) << what;
   const auto& rows = result.trajectory;
   expect_rows_on_path(robot, problem, rows, what);
   counts.between += static_cast<int>(rows.size()) > truth.lattice->layers();
@@ -251,7 +201,7 @@ void check_problem(const PathProblem& problem, const std::string& what, Counts& 
   counts.obstacles += !problem.scene.empty();
   counts.circles += problem.roll->upper - problem.roll->lower >= kTwoPi;
   counts.inexact += !robot.srs().exact;
-  if (truth.answer.solved) {
+  if (truth.solved()) {
     ++counts.solved;
     expect_path(robot, problem, *first, truth, what, counts);
   } else {
@@ -283,10 +233,10 @@ TEST(KnotGrid, FourPlannersAndBruteForceOnRandomProblems) {
       "obstacles, "
       "%d with all rolls, %d on arms that are not exactly S-R-S; joint 7 at rest in %d, moved "
       "after all in %d; solved with windows "
-      "of roll %d, with a cost of it %d\n",
+      "of roll %d, with a cost of it %d; steps halved in %d\n",
       count, counts.solved, counts.turned, counts.between, counts.infeasible, counts.started,
       counts.continuous, counts.obstacles, counts.circles, counts.inexact, counts.at_rest,
-      counts.moved_after_all, counts.windows, counts.costly);
+      counts.moved_after_all, counts.windows, counts.costly, counts.halved);
   EXPECT_GE(counts.windows, at_least_among(count / 20));
   EXPECT_GE(counts.costly, at_least_among(count / 12));
   EXPECT_GE(counts.solved, at_least_among(count / 4));
@@ -442,6 +392,7 @@ TEST(KnotGrid, JointSevenMovesWhereItCannotRest) {
   PathProblem problem = io::load_path_problem(data_dir() / "problems/torch_door.yaml");
   problem.tool = Eigen::Translation3d(0, 0, 0.2) * Pose::Identity();
   problem.attached.clear();
+  problem.resolution.knot = 0.025;
   problem.resolution.droll = 0.3;
   problem.resolution.dphi = 0.3;
   Planner planner(problem);
@@ -484,7 +435,7 @@ TEST(KnotGrid, RepairsAreSweeps) {
       problem.resolution.droll = 0.35;
     }
     const auto lattice = KnotGrid::make(robot.arm().chain, robot.srs(),
-                                           problem_path(problem, robot.arm().chain), problem);
+                                        problem_path(problem, robot.arm().chain), problem);
     const auto repaired = make_cost_to_go(*lattice);
     repaired->sweep(lattice->layers() - 1);
     std::vector<std::pair<int, int>> nodes;

@@ -275,7 +275,7 @@ TEST(Windings, CirclesCostWhatTurnsToldApartCost) {
       counts.wound, counts.several_wound, counts.solved_wound, counts.none_wound, counts.noted,
       counts.certified);
   for (const int solved : counts.solved_by_shape) EXPECT_GE(solved, at_least_among(6));
-  EXPECT_GE(counts.started, at_least_among(20));
+  EXPECT_GE(counts.started, at_least_among(15));
   EXPECT_GE(counts.ended, at_least_among(20));
   EXPECT_GE(counts.solved_wound, at_least_among(1));
   EXPECT_GE(counts.none_wound, at_least_among(10));

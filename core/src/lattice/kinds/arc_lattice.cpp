@@ -22,8 +22,6 @@ namespace {
 
 using Point = ExplicitLattice::Point;
 
-constexpr double kTurnOfKnots = 0.2;  // rad: how far the path may turn from a knot to the next
-
 std::array<double, kDof> scaling(const Chain& chain, const Cost& cost) {
   std::array<double, kDof> weights = joint_weights(cost, chain);
   for (std::size_t j = 0; cost.metric == CostMetric::kTime && j < kDof; ++j)
@@ -73,17 +71,6 @@ Point given_point(const SelfMotion& motion, const Config& q) {
   return point;
 }
 
-/// Returns the layer of a path, between two others, that is nearest to the middle of the way
-/// between them.
-int middle_layer(const ToolPath& path, int first, int last) {
-  const double middle = (path.layer(first).travel + path.layer(last).travel) / 2;
-  int nearest = first + 1;
-  for (int i = first + 2; i < last; ++i)
-    if (std::abs(path.layer(i).travel - middle) < std::abs(path.layer(nearest).travel - middle))
-      nearest = i;
-  return nearest;
-}
-
 }  // namespace
 
 ArcLattice::Data ArcLattice::build(const Chain& chain, const LockMethod& method,
@@ -94,7 +81,7 @@ ArcLattice::Data ArcLattice::build(const Chain& chain, const LockMethod& method,
   std::vector<std::vector<Point>> points;
   result.whole = &whole;
   const double knot = problem.resolution.knot_of_arcs();
-  if (knot > 0) result.set_knots(knots_along(whole, {knot, kTurnOfKnots, true}));
+  if (knot > 0) result.set_knots(knots_along(whole, knot));
   const ToolPath& path = result.path();
   if (problem.start) require_fits(PathEnd::kFirst, problem, chain, path);
   const bool ends_given = problem.end && !path.ends_early();

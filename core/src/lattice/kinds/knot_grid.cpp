@@ -7,13 +7,14 @@
 #include <string>
 #include <utility>
 
-#include "kinematics/srs/exact_chain_turned.hpp"
+#include "kinematics/newton/pose_newton.hpp"
 #include "lattice/circle_turns.hpp"
 #include "lattice/given_posture.hpp"
 #include "lattice/knots.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/memory.hpp"
 #include "swivel/core/base/timeline.hpp"
+#include "swivel/core/kinematics/srs/arm_angle.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
@@ -22,18 +23,17 @@ namespace swivel {
 
 namespace {
 
-// in steps of dalpha: how far the path may turn from a knot to the next
-constexpr double kMostTurning = 5;
-
-/// Returns the planes of some layers for a tool that is turned: those of the tool that is not, each
-/// under the smallest rotation.
+/// Returns the planes of some layers: `planes`, and for a path whose tool is turned each under the
+/// smallest rotation that takes the tool that is not there.
 std::vector<ArmPlane> planes_at(const SrsArm& arm, const std::vector<ArmPlane>& planes,
                                 const std::vector<int>& layers, const ToolPath& turned) {
   std::vector<ArmPlane> found;
   found.reserve(layers.size());
   for (std::size_t k = 0; k < layers.size(); ++k)
-    found.push_back(carry_plane(arm, planes[static_cast<std::size_t>(layers[k])],
-                                turned.layer(static_cast<int>(k)).tool));
+    found.push_back(turned.unturned()
+                        ? carry_plane(arm, planes[static_cast<std::size_t>(layers[k])],
+                                      turned.layer(static_cast<int>(k)).tool)
+                        : planes[static_cast<std::size_t>(layers[k])]);
   return found;
 }
 
@@ -47,99 +47,112 @@ void require_memory(double nodes_of_layer, std::int64_t nodes, const std::string
                                  "has memory for: allowed are larger droll, dphi or knot");
 }
 
-/// Returns by how many of `angles` cells of width dphi (rad) the arm angle may change on a step
-/// that lets it change by `turn` (rad).
-int cells_per_step(int angles, double turn, double dphi) {
-  return static_cast<int>(std::min<double>(
-      angles / 2, std::max<double>(std::min(1, angles / 2), std::floor(turn / dphi + 1e-9))));
+/// Returns the squares of the weights by which Newton steps between knots are least: those of the
+/// metric over the largest, a hundredth at least.
+Config squared_weights(const std::array<double, kDof>& cost_scale) {
+  constexpr double kLeastWeight = 1e-2;
+  const double largest = *std::max_element(cost_scale.begin(), cost_scale.end());
+  Config squares;
+  for (std::size_t j = 0; j < kDof; ++j) {
+    const double weight = largest > 0 ? std::max(kLeastWeight, cost_scale[j] / largest) : 1;
+    squares[static_cast<Eigen::Index>(j)] = weight * weight;
+  }
+  return squares;
 }
 
 }  // namespace
 
+KnotGrid::~KnotGrid() = default;
+
 std::unique_ptr<KnotGrid> KnotGrid::make(const Chain& chain, const SrsArm& arm,
-                                               const ToolPath& path, const PathProblem& problem,
-                                               const Budget& budget,
-                                               std::optional<double> last_joint, bool circles) {
+                                         const ToolPath& path, const PathProblem& problem,
+                                         const Budget& budget, std::optional<double> last_joint,
+                                         bool circles) {
   if (problem.limits.step_error)
     throw InputError(problem.source,
                      "limits.step_error: allowed without path.roll, or for arms of six joints");
-  Joints wound;
-  wound.fill(!circles);
-  return std::unique_ptr<KnotGrid>(new KnotGrid(
-      chain, arm, path, problem, budget, knots_along(path, problem.resolution), last_joint, wound));
-}
-
-KnotGrid::Knots KnotGrid::knots_along(const ToolPath& path, const Resolution& resolution) {
-  Knots knots;
-  knots.layers = swivel::knots_along(
-      path, {resolution.knot.value_or(kKnotOfRolls), kMostTurning * resolution.dalpha});
-  knots.path = std::make_unique<const ToolPath>(path.with_layers(knots.layers));
-  return knots;
+  Layout layout;
+  layout.knots = knots_along(path, problem.resolution.knot_of_grids(chain.free_roll.has_value()));
+  layout.last_joint = last_joint;
+  layout.wound.fill(!circles);
+  return std::unique_ptr<KnotGrid>(
+      new KnotGrid(chain, arm, path, problem, budget, std::move(layout)));
 }
 
 KnotGrid::KnotGrid(const Chain& chain, const SrsArm& arm, const ToolPath& path,
-                         const PathProblem& problem, const Budget& budget, Knots knots,
-                         std::optional<double> last_joint, const Joints& wound)
-    : Lattice(chain, *knots.path, problem, arm.fit_error),
+                   const PathProblem& problem, const Budget& budget, Layout layout)
+    : KnotGrid(chain, arm, path, problem, budget, std::move(layout),
+               std::make_unique<const ToolPath>(path.with_layers(layout.knots))) {}
+
+KnotGrid::KnotGrid(const Chain& chain, const SrsArm& arm, const ToolPath& path,
+                   const PathProblem& problem, const Budget& budget, Layout&& layout,
+                   std::unique_ptr<const ToolPath> path_of_knots)
+    : Lattice(chain, *path_of_knots, problem, arm.fit_error),
       arm_(&arm),
-      last_joint_(last_joint),
+      layout_(std::move(layout)),
+      problem_(problem),
       whole_(&path),
-      knots_(std::move(knots.layers)),
-      knot_path_(std::move(knots.path)),
+      knot_path_(std::move(path_of_knots)),
       planes_(carried_planes(arm, path, budget)),
+      newton_(std::make_unique<const PoseNewton>(chain)),
+      scale2_(squared_weights(cost_scale())),
       whole_step_bounds_(step_bounds_along(chain, path, problem.limits, problem.resolution)) {
   const TraceSpan span("rolls");
-  const Resolution& resolution = problem.resolution;
-
-  set_row_step_bounds(bounds_between_knots(knots_, whole_step_bounds_));
-  circles_ = SrsLattice::possible_circles(chain, arm, problem,
-                                          bounds_between_knots(knots_, whole_step_bounds_));
+  // No edge moves a joint by half a turn that may be a circle.
+  constexpr double kLess = 1e-6;  // rad
+  std::vector<Config> bounds = bounds_between_knots(knots(), whole_step_bounds_);
+  circles_ = SrsLattice::possible_circles(chain, arm, problem, {});
+  for (Config& bound : bounds)
+    for (int j = 0; j < kDof; ++j)
+      if (circles_[static_cast<std::size_t>(j)])
+        bound[j] = std::min(bound[j], kPi - 2 * arm.fit_error[j] - kLess);
+  set_row_step_bounds(bounds);
   for (std::size_t j = 0; j < kDof; ++j) {
-    circles_[j] = circles_[j] && !wound[j] && !(last_joint_ && j + 1 == kDof);
+    circles_[j] = circles_[j] && !layout_.wound[j] && !(last_joint() && j + 1 == kDof);
     continuous_[j] = continuous_[j] || circles_[j];
+    layout_.wound[j] = !circles_[j];
   }
-  if (circles_ != Joints{}) problem_ = problem;
-
-  const Roll& range = *chain.free_roll;
-  circle_ = range.circle();
-  windows_of_roll_ = problem.waypoints.front().roll.has_value();
-  double nominal = circle_ ? 0 : std::clamp(0.0, range.lower, range.upper);
+  circle_ = chain.free_roll && chain.free_roll->circle();
+  windows_of_roll_ = chain.free_roll && problem.waypoints.front().roll.has_value();
   place_given(problem, budget);
-  if (const Given* const first = start_ ? start_.get() : last_.get()) nominal = first->roll;
-  if (last_joint_)
-    value_of_ = rank_ = {0}, values_ = {0};
-  else
-    choose_rolls(nominal, resolution.droll);
+  if (layout_.rolls.values.empty()) choose_rolls(problem.resolution.droll);
 
   PathProblem of_nodes = problem;
   of_nodes.start.reset();
   of_nodes.end.reset();
-  for (const int value : value_of_) {
+  for (const int value : layout_.rolls.value_of) {
     budget.poll();
     std::vector<double> rolls = rolls_along(value);
-    ToolPath turned = knot_path_->with_rolls(rolls);
-    std::vector<ArmPlane> planes = planes_at(arm, planes_, knots_, turned);
+    ToolPath turned = at_rolls(rolls);
+    std::vector<ArmPlane> planes = planes_at(arm, planes_, knots(), turned);
     turned_.push_back(std::make_unique<Turned>(std::move(rolls), std::move(turned), chain, arm,
-                                               of_nodes, budget, std::move(planes), last_joint_,
+                                               of_nodes, budget, std::move(planes), last_joint(),
                                                circles_));
   }
   width_ = at_roll(0).width();
   require_memory(static_cast<double>(rolls()) * width_, nodes(), problem.source);
 
+  // As far as the steps between allow together, so that more knots allow no more.
+  const SrsLattice& one = at_roll(0);
   for (int k = 0; k + 1 < layers(); ++k) {
     Window& window = windows_.emplace_back();
-    window.phi = cells_per_step(at_roll(0).angles(), limits_.arm_slope * way(k), resolution.dphi);
+    window.phi = static_cast<int>(std::min<std::int64_t>(
+        one.angles() / 2, std::int64_t{one.window()} * (layer_of_rows(k + 1) - layer_of_rows(k))));
     widest_ = std::max(widest_, window.phi);
   }
   find_near(problem);
 }
 
+ToolPath KnotGrid::at_rolls(const std::vector<double>& rolls) const {
+  return chain_->free_roll ? knot_path_->with_rolls(rolls) : *knot_path_;
+}
+
 void KnotGrid::place_given(const PathProblem& problem, const Budget& budget) {
   const auto place = [&](PathEnd which, PathProblem only) {
-    const double roll = roll_of_given(which, problem, *chain_, *whole_, *chain_->free_roll);
-    ToolPath turned =
-        knot_path_->with_rolls(std::vector<double>(static_cast<std::size_t>(layers()), roll));
-    std::vector<ArmPlane> planes = planes_at(*arm_, planes_, knots_, turned);
+    const double roll =
+        chain_->free_roll ? roll_of_given(which, problem, *chain_, *whole_, *chain_->free_roll) : 0;
+    ToolPath turned = at_rolls(std::vector<double>(static_cast<std::size_t>(layers()), roll));
+    std::vector<ArmPlane> planes = planes_at(*arm_, planes_, knots(), turned);
     return std::make_unique<const Given>(roll, std::move(turned), *chain_, *arm_, only, budget,
                                          std::move(planes), circles_);
   };
@@ -186,9 +199,9 @@ void KnotGrid::find_near(const PathProblem& problem) {
         if (may_end_from(rank)) join(rank, 0);
       } else if (alike) {
         for (int by = -cells; by <= cells; ++by) {
-          const int value = value_of_[static_cast<std::size_t>(rank)] + by;
+          const int value = layout_.rolls.value_of[static_cast<std::size_t>(rank)] + by;
           if (circle_ || (value >= 0 && value < values))
-            join(rank, rank_[static_cast<std::size_t>((value + values) % values)]);
+            join(rank, layout_.rolls.rank[static_cast<std::size_t>((value + values) % values)]);
         }
       } else {
         const double from = step == 0 && start_ ? start_->roll : roll_of_rank(step, rank);
@@ -198,8 +211,8 @@ void KnotGrid::find_near(const PathProblem& problem) {
     for (auto* all : {&lists.after, &lists.before})
       for (auto& list : *all) std::sort(list.begin(), list.end());
   }
-  const double knot =
-      std::max(problem.resolution.ds, problem.resolution.knot.value_or(kKnotOfRolls));
+  const double knot = std::max(problem.resolution.ds,
+                               problem.resolution.knot_of_grids(chain_->free_roll.has_value()));
   if (!turns && !windows_of_roll_ && limits_.roll_slope * knot < droll) {
     const std::string text = formatted(
         "limits.roll_slope: is less than a step of resolution.droll from knot to knot: allowed is "
@@ -228,7 +241,7 @@ int KnotGrid::rank_beside(int layer) const {
 }
 
 std::vector<double> KnotGrid::rolls_along(int value) const {
-  const double part = values_[static_cast<std::size_t>(value)];
+  const double part = layout_.rolls.values[static_cast<std::size_t>(value)];
   std::vector<double> rolls;
   for (int layer = 0; layer < layers(); ++layer) {
     const Roll& window = path_->layer(layer).window;
@@ -237,43 +250,53 @@ std::vector<double> KnotGrid::rolls_along(int value) const {
   return rolls;
 }
 
-void KnotGrid::choose_rolls(double nominal, double droll) {
+void KnotGrid::choose_rolls(double droll) {
+  auto& [values, rank, value_of] = layout_.rolls;
+  if (last_joint() || !chain_->free_roll) {
+    values = {0};
+    rank = value_of = {0};
+    return;
+  }
   const Roll& range = *chain_->free_roll;
-  std::vector<double> away;  // from the nominal roll, in the mean, by value
+  const Given* const first = start_ ? start_.get() : last_.get();
+  const double nominal = first     ? first->roll
+                         : circle_ ? 0
+                                   : std::clamp(0.0, range.lower, range.upper);
   if (windows_of_roll_) {
     double widest = 0;
     for (int layer = 0; layer < layers(); ++layer)
       widest =
           std::max(widest, path_->layer(layer).window.upper - path_->layer(layer).window.lower);
     const int n = static_cast<int>(std::ceil(widest / droll - 1e-9));
-    for (int k = 0; k <= n; ++k) values_.push_back(n > 0 ? static_cast<double>(k) / n : 0);
+    for (int k = 0; k <= n; ++k) values.push_back(n > 0 ? static_cast<double>(k) / n : 0);
   } else if (circle_) {
     const int n = std::max(1, static_cast<int>(std::ceil(kTwoPi / droll - 1e-9)));
     for (int k = 0; k < n; ++k)
-      values_.push_back(k == 0 ? nominal : wrap_angle(nominal + kTwoPi * k / n));
+      values.push_back(k == 0 ? nominal : wrap_angle(nominal + kTwoPi * k / n));
   } else {
     const auto below = static_cast<int>(std::floor((nominal - range.lower) / droll + 1e-9));
     const auto above = static_cast<int>(std::floor((range.upper - nominal) / droll + 1e-9));
     constexpr double kApart =
         1e-3;  // of a step: an end of the range that is no further from a cell is that cell
-    if (nominal - below * droll - range.lower > kApart * droll) values_.push_back(range.lower);
+    if (nominal - below * droll - range.lower > kApart * droll) values.push_back(range.lower);
     for (int k = -below; k <= above; ++k)
-      values_.push_back(std::clamp(nominal + k * droll, range.lower, range.upper));
-    if (range.upper - (nominal + above * droll) > kApart * droll) values_.push_back(range.upper);
+      values.push_back(std::clamp(nominal + k * droll, range.lower, range.upper));
+    if (range.upper - (nominal + above * droll) > kApart * droll) values.push_back(range.upper);
   }
-  value_of_.resize(values_.size());
-  std::iota(value_of_.begin(), value_of_.end(), 0);
-  for (const int value : value_of_) {
+  value_of.resize(values.size());
+  std::iota(value_of.begin(), value_of.end(), 0);
+  std::vector<double> away;  // from the nominal roll, in the mean, by value
+  for (const int value : value_of) {
     double& sum = away.emplace_back(0);
     for (const double roll : rolls_along(value))
       sum += std::abs(circle_ ? wrap_angle(roll - nominal) : roll - nominal) / layers();
   }
-  std::stable_sort(value_of_.begin(), value_of_.end(), [&](int a, int b) {
+  std::stable_sort(value_of.begin(), value_of.end(), [&](int a, int b) {
     return away[static_cast<std::size_t>(a)] < away[static_cast<std::size_t>(b)] - 1e-9;
   });
-  rank_.resize(values_.size());
-  for (std::size_t rank = 0; rank < value_of_.size(); ++rank)
-    rank_[static_cast<std::size_t>(value_of_[rank])] = static_cast<int>(rank);
+  rank.resize(values.size());
+  for (std::size_t k = 0; k < value_of.size(); ++k)
+    rank[static_cast<std::size_t>(value_of[k])] = static_cast<int>(k);
 }
 
 std::int64_t KnotGrid::nodes() const {
@@ -292,6 +315,10 @@ void KnotGrid::layer_nodes(int layer, std::vector<Node>& out) const {
     at_roll(rank).layer_nodes(layer, nodes);
     for (const Node& node : nodes) out.push_back({slot_of(rank, node.slot), node.q});
   }
+}
+
+bool KnotGrid::proved_unreachable(int layer) const {
+  return !chain_->free_roll && !given(layer) && at_roll(0).proved_unreachable(layer);
 }
 
 std::optional<Lattice::Reach> KnotGrid::out_of_reach(int layer) const {
@@ -314,9 +341,11 @@ int KnotGrid::neighbour_in_redundancy(int layer, int slot, int by) const {
 
 int KnotGrid::neighbour_in_roll(int layer, int slot, int by) const {
   if (given(layer)) return -1;
-  const int values = rolls(), value = value_of_[static_cast<std::size_t>(slot / width_)] + by;
+  const int values = rolls(),
+            value = layout_.rolls.value_of[static_cast<std::size_t>(slot / width_)] + by;
   if (!circle_ && (value < 0 || value >= values)) return -1;
-  return slot_of(rank_[static_cast<std::size_t>((value + values) % values)], slot % width_);
+  return slot_of(layout_.rolls.rank[static_cast<std::size_t>((value + values) % values)],
+                 slot % width_);
 }
 
 int KnotGrid::neighbour_along_path(int layer, int slot, int by) const {
@@ -328,7 +357,7 @@ int KnotGrid::neighbour_along_path(int layer, int slot, int by) const {
 }
 
 void KnotGrid::slots_with_same_body_poses(int layer, int slot, unsigned groups,
-                                             std::vector<int>& out) const {
+                                          std::vector<int>& out) const {
   if (is_approximate() || given(layer)) {
     out.assign(1, slot);
     return;
@@ -354,7 +383,8 @@ bool KnotGrid::in_window(int layer, int a, int b) const {
 }
 
 std::optional<Lattice::RollStep> KnotGrid::roll_step(int layer, int a, const Config&, int b,
-                                                        const Config&) const {
+                                                     const Config&) const {
+  if (!chain_->free_roll) return std::nullopt;
   const std::vector<int>& rolls = near(layer, rank_of(layer, a), true);
   const double change = roll(layer + 1, b) - roll(layer, a);
   return RollStep{std::abs(circle_ ? wrap_angle(change) : change), limits_.roll_slope * way(layer),
@@ -363,15 +393,20 @@ std::optional<Lattice::RollStep> KnotGrid::roll_step(int layer, int a, const Con
 }
 
 bool KnotGrid::in_arm_window(int layer, int a, int b) const {
-  if (branch(layer, a) != branch(layer + 1, b)) return false;
+  const int flip = branch(layer, a) ^ branch(layer + 1, b);
+  if (flip != 0 && std::find(kFlips.begin(), kFlips.end(), flip) == kFlips.end()) return false;
   const int angles = at_roll(0).angles(), window = phi_window(layer),
             to = at_roll(0).angle_of(inner(layer + 1, b));
   if (layer == 0 && start_) {
     const double cell = -kPi + kTwoPi * to / angles;
-    return std::abs(wrap_angle(cell - phi(0, 0))) <= window * kTwoPi / angles + 1e-9;
+    if (!(std::abs(wrap_angle(cell - phi(0, 0))) <= window * kTwoPi / angles + 1e-9)) return false;
+  } else {
+    const int apart = std::abs(at_roll(0).angle_of(a % width_) - to);
+    if (std::min(apart, angles - apart) > window) return false;
   }
-  const int apart = std::abs(at_roll(0).angle_of(a % width_) - to);
-  return std::min(apart, angles - apart) <= window;
+  if (flip == 0) return true;
+  const auto from = node(layer, a), onto = node(layer + 1, b);
+  return from && onto && may_flip(flip, *from) && may_flip(flip, *onto);
 }
 
 void KnotGrid::successors(int layer, int a, std::vector<SlotRun>& out) const {
@@ -380,8 +415,7 @@ void KnotGrid::successors(int layer, int a, std::vector<SlotRun>& out) const {
     if (in_window(layer, a, 0)) out.push_back({0, 1});
     return;
   }
-  const int angles = at_roll(0).angles(), window = phi_window(layer),
-            windings = at_roll(0).windings();
+  const int angles = at_roll(0).angles(), window = phi_window(layer);
   int first = 0, count = std::min(2 * window + 1, angles);
   if (layer == 0 && start_) {
     const double step = kTwoPi / angles, from = (phi(0, 0) + kPi) / step;
@@ -392,43 +426,61 @@ void KnotGrid::successors(int layer, int a, std::vector<SlotRun>& out) const {
   } else {
     first = (at_roll(0).angle_of(a % width_) - window + angles) % angles;
   }
-  const int solution = branch(layer, a) * windings, end = first + count;
+  const int windings = at_roll(0).windings(), from = branch(layer, a), end = first + count;
+  const auto q = node(layer, a);
   for (const int rank : near(layer, rank_of(layer, a), true))
-    for (int winding = 0; winding < windings; ++winding) {
-      const int zero = slot_of(rank, (solution + winding) * angles);
-      if (end > angles) out.push_back({zero, zero + end - angles});
-      out.push_back({zero + first, zero + std::min(end, angles)});
+    for (const int flip : {0, kFlips[0], kFlips[1]}) {
+      if (flip != 0 && !(q && may_flip(flip, *q))) continue;
+      for (int winding = 0; winding < windings; ++winding) {
+        const int zero = slot_of(rank, ((from ^ flip) * windings + winding) * angles);
+        if (end > angles) add_flips(layer, flip, {zero, zero + end - angles}, out);
+        add_flips(layer, flip, {zero + first, zero + std::min(end, angles)}, out);
+      }
     }
 }
 
-std::optional<Config> KnotGrid::solve(int i, double roll, double phi, int branch,
-                                         const Config& near, InterpolatedEdge& fault) const {
-  const Pose tool = rolled(whole_->layer(i).tool, roll);
-  const ArmPlane plane = carry_plane(*arm_, planes_[static_cast<std::size_t>(i)], tool);
-  const ReachStatus reach = reach_status(*arm_, plane.reach);
-  if (reach != ReachStatus::kReachable) {
-    fault.fault = reach == ReachStatus::kSingular ? InterpolatedEdge::Fault::kSingular
-                                                  : InterpolatedEdge::Fault::kNoIk;
-    return std::nullopt;
+void KnotGrid::add_flips(int layer, int bit, const SlotRun& run, std::vector<SlotRun>& out) const {
+  if (bit == 0) return out.push_back(run);
+  bool goes_on = false;
+  for (int b = run.first; b < run.last; ++b) {
+    const auto q = node(layer + 1, b);
+    const bool flips = q && may_flip(bit, *q);
+    if (flips && goes_on)
+      out.back().last = b + 1;
+    else if (flips)
+      out.push_back({b, b + 1});
+    goes_on = flips;
   }
-  Config q = srs_ik(*arm_, elbow_circles(*arm_, plane, tool), phi, branch);
-  if (std::abs(std::sin(arm_->shoulder_angle(q))) < kSingularSine ||
-      std::abs(std::sin(arm_->wrist_angle(q))) < kSingularSine) {
-    fault.fault = InterpolatedEdge::Fault::kSingular;
-    return std::nullopt;
-  }
-  for (int j = 0; j < kDof; ++j) q[j] = near[j] + wrap_angle(q[j] - near[j]);
-  if (last_joint_) q[kDof - 1] = *last_joint_;
-  if (!arm_->exact) {
-    const auto row = last_joint_ ? solve_exact_chain_turned(*chain_, *arm_, plane, tool, phi, q)
-                                 : solve_exact_chain(*chain_, *arm_, plane, tool, phi, q);
-    if (!row) {
-      fault.fault = InterpolatedEdge::Fault::kNoIk;
-      return std::nullopt;
+}
+
+std::optional<Config> KnotGrid::image(int i, double roll, const Config& chord,
+                                      InterpolatedEdge& fault) const {
+  constexpr int kSteps = 6;
+  Pose tool = whole_->layer(i).tool;
+  std::optional<PoseNewton::Point> point;
+  if (last_joint()) {
+    // The roll is what the other joints make it: joint 7 turns the tool meanwhile, and back.
+    constexpr double kFree = 1e-6;
+    Config scale2 = scale2_;
+    scale2[kDof - 1] = kFree;
+    const auto turned = [&](const Config& q) {
+      return rolled(tool, roll_between(tool, chain_->tool(q)));
+    };
+    point = newton_->nearest(chord, turned(chord), scale2, kSteps);
+    if (point) {
+      Config q = point->q;
+      q[kDof - 1] = *last_joint();
+      point = newton_->with_joint_at(q, turned(q), kDof - 1, *last_joint());
     }
-    q = *row;
+  } else {
+    if (chain_->free_roll) tool = rolled(tool, roll);
+    point = newton_->nearest(chord, tool, scale2_, kSteps);
   }
-  fault.q = q;
+  if (!point) {
+    fault.fault = InterpolatedEdge::Fault::kNoIk;
+    return std::nullopt;
+  }
+  const Config& q = fault.q = point->q;
   for (int j = 0; j < kDof; ++j) {
     const JointLimit& limit = chain_->limit[static_cast<std::size_t>(j)];
     const double margin = limits_.joint_margin - kLimitTolerance;
@@ -442,24 +494,31 @@ std::optional<Config> KnotGrid::solve(int i, double roll, double phi, int branch
   return fault.fault == InterpolatedEdge::Fault::kNone ? std::optional(q) : std::nullopt;
 }
 
+TrajectoryRow KnotGrid::row(int i, const Config& q, double roll) const {
+  const Pose& tool = whole_->layer(i).tool;
+  const ArmPlane& plane = planes_[static_cast<std::size_t>(i)];
+  return {whole_->layer(i).s,
+          arm_angle(*arm_,
+                    chain_->free_roll ? carry_plane(*arm_, plane, rolled(tool, roll)) : plane, q),
+          arm_->branch(q), q, circle_ ? wrap_angle(roll) : roll};
+}
+
 double KnotGrid::roll_at(int i, const Config& q, double chosen) const {
-  return last_joint_ ? roll_between(whole_->layer(i).tool, chain_->tool(q)) : chosen;
+  return last_joint() ? roll_between(whole_->layer(i).tool, chain_->tool(q)) : chosen;
 }
 
 template <class Visit>
 Lattice::InterpolatedEdge KnotGrid::walk(int layer, int a, const Config& qa, int b,
-                                            const Config& qb, const Visit& visit) const {
+                                         const Config& qb, const Visit& visit) const {
   InterpolatedEdge interpolated;
-  const int first = knots_[static_cast<std::size_t>(layer)],
-            last = knots_[static_cast<std::size_t>(layer) + 1];
-  const double roll = this->roll(layer, a), phi = this->phi(layer, a);
-  const double roll_change = this->roll(layer + 1, b) - roll;
-  const double dphi = wrap_angle(this->phi(layer + 1, b) - phi),
-               droll = circle_ ? wrap_angle(roll_change) : roll_change;
-  const int branch = this->branch(layer, a);
+  const int first = layer_of_rows(layer), last = layer_of_rows(layer + 1);
+  const double roll = this->roll(layer, a), roll_change = this->roll(layer + 1, b) - roll;
+  const double droll = circle_ ? wrap_angle(roll_change) : roll_change;
+  const Config chord = delta(qa, qb);
   const double begin = whole_->layer(first).travel, way = whole_->layer(last).travel - begin;
   // Where a window narrows between two knots the roll follows its end.
   const auto chosen = [&](int i, double t) {
+    if (!chain_->free_roll) return 0.0;
     const Roll& window = whole_->layer(i).window;
     return std::clamp(roll + t * droll, window.lower, std::max(window.lower, window.upper));
   };
@@ -469,9 +528,9 @@ Lattice::InterpolatedEdge KnotGrid::walk(int layer, int a, const Config& qa, int
     const double t = (whole_->layer(i + 1).travel - begin) / way;
     std::optional<Config> to;
     if (i + 1 == last)
-      to = from + delta(from, qb);
+      to = qa + chord;
     else
-      to = solve(i + 1, chosen(i + 1, t), phi + t * dphi, branch, from, interpolated);
+      to = image(i + 1, chosen(i + 1, t), qa + t * chord, interpolated);
     if (!to) return interpolated;
     interpolated.q = *to;
     const Config move = *to - from;
@@ -483,7 +542,7 @@ Lattice::InterpolatedEdge KnotGrid::walk(int layer, int a, const Config& qa, int
         whole_step_bounds_[whole_step_bounds_.size() == 1 ? 0 : static_cast<std::size_t>(i)];
     if (!((move.cwiseAbs().array() <= bound.array()).all())) {
       interpolated.fault = InterpolatedEdge::Fault::kStep;
-    } else if ((last_joint_ || windows_of_roll_) && !(turned <= most_turn + 1e-9)) {
+    } else if ((last_joint() || windows_of_roll_) && !(turned <= most_turn + 1e-9)) {
       interpolated.fault = InterpolatedEdge::Fault::kRollSlope;
       interpolated.roll = {turned, most_turn, travel, false};
     } else if (!keeps_path_error(*chain_, *whole_, i, from, move, limits_.tool_path_error)) {
@@ -494,8 +553,7 @@ Lattice::InterpolatedEdge KnotGrid::walk(int layer, int a, const Config& qa, int
     if (interpolated.fault != InterpolatedEdge::Fault::kNone) return interpolated;
     if (i + 1 < last) {
       interpolated.rows.push_back(*to);
-      visit(TrajectoryRow{whole_->layer(i + 1).s, wrap_angle(phi + t * dphi), branch, *to,
-                          circle_ ? wrap_angle(to_roll) : to_roll});
+      visit(row(i + 1, *to, to_roll));
     }
     from = *to;
     from_roll = to_roll;
@@ -504,15 +562,15 @@ Lattice::InterpolatedEdge KnotGrid::walk(int layer, int a, const Config& qa, int
 }
 
 Lattice::InterpolatedEdge KnotGrid::interpolate_edge(int layer, int a, const Config& qa, int b,
-                                                        const Config& qb) const {
+                                                     const Config& qb) const {
   return walk(layer, a, qa, b, qb, [](const TrajectoryRow&) {});
 }
 
 LatticeInfo KnotGrid::describe() const {
   LatticeInfo info = Lattice::describe();
   const SrsLattice& one = at_roll(0);
-  info.grid =
-      LatticeInfo::Grid{one.angles(), kBranches, one.windings(), widest_phi_window(), rolls()};
+  info.grid = LatticeInfo::Grid{one.angles(), kBranches, one.windings(), widest_phi_window(), {}};
+  if (chain_->free_roll) info.grid->rolls = rolls();
   return info;
 }
 
@@ -528,7 +586,7 @@ std::vector<TrajectoryRow> KnotGrid::followed(const std::vector<int>& slots) con
       q = rows.back().q + delta(rows.back().q, q);
     }
     rows.push_back({path_->layer(k).s, phi(k, slot), branch(k, slot), q,
-                    roll_at(knots_[static_cast<std::size_t>(k)], q, roll(k, slot))});
+                    roll_at(layer_of_rows(k), q, roll(k, slot))});
   }
   if (static_cast<int>(slots.size()) < layers()) return rows;
   std::vector<Config> joints;
@@ -538,8 +596,7 @@ std::vector<TrajectoryRow> KnotGrid::followed(const std::vector<int>& slots) con
   return rows;
 }
 
-CircleTurns KnotGrid::turns_along(const std::vector<TrajectoryRow>& rows,
-                                     std::size_t slots) const {
+CircleTurns KnotGrid::turns_along(const std::vector<TrajectoryRow>& rows, std::size_t slots) const {
   std::vector<Config> joints;
   for (const TrajectoryRow& row : rows) joints.push_back(row.q);
   const bool ends = end_ && static_cast<int>(slots) == layers();
@@ -561,19 +618,28 @@ Lattice::Joints KnotGrid::off_limits(const std::vector<int>& slots) const {
   return turns_along(followed(slots), slots.size()).furthest_over();
 }
 
-std::unique_ptr<Lattice> KnotGrid::with_windings(const Joints& joints) const {
-  if (!problem_) return nullptr;
-  Joints wound{};
-  std::vector<Joints> told_apart = told_apart_;
-  told_apart.push_back(joints);
-  for (const Joints& told : told_apart)
-    for (std::size_t j = 0; j < kDof; ++j) wound[j] = wound[j] || told[j];
-  std::unique_ptr<KnotGrid> lattice(new KnotGrid(*chain_, *arm_, *whole_, *problem_, {},
-                                                       knots_along(*whole_, problem_->resolution),
-                                                       last_joint_, wound));
-  lattice->told_apart_ = std::move(told_apart);
+std::unique_ptr<Lattice> KnotGrid::laid_out(Layout layout, const Budget& budget) const {
+  std::unique_ptr<Lattice> lattice(
+      new KnotGrid(*chain_, *arm_, *whole_, problem_, budget, std::move(layout)));
   lattice->take_clearances(limits_);
   return lattice;
+}
+
+std::unique_ptr<Lattice> KnotGrid::with_windings(const Joints& joints) const {
+  if (circles_ == Joints{}) return nullptr;
+  Layout layout = layout_;
+  for (std::size_t j = 0; j < kDof; ++j) layout.wound[j] = layout.wound[j] || joints[j];
+  layout.told_apart.push_back(joints);
+  return laid_out(std::move(layout), {});
+}
+
+std::unique_ptr<Lattice> KnotGrid::with_knots(const std::set<int>& steps,
+                                              const Budget& budget) const {
+  Layout layout = layout_;
+  layout.knots = halved(*whole_, knots(), steps);
+  if (layout.knots.size() == knots().size()) return nullptr;
+  layout.halvings.push_back(steps);
+  return laid_out(std::move(layout), budget);
 }
 
 }  // namespace swivel

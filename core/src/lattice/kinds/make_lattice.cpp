@@ -19,6 +19,10 @@ std::unique_ptr<Lattice> make_lattice(const Chain& chain, const ArmClass& arm, c
                      "free: allowed is path.roll left out, or path.closed");
   if (chain.free_roll && !path.unturned())
     return KnotGrid::make(chain, *arm.srs, path, problem, budget, std::nullopt, true);
+  // The estimate of the step error is that of a move between neighbouring layers.
+  if (arm.kind == ArmKind::kSrs && !chain.free_roll &&
+      problem.resolution.knot_of_grids(false) > 0 && !problem.limits.step_error)
+    return KnotGrid::make(chain, *arm.srs, path, problem, budget, std::nullopt, true);
   if (arm.kind == ArmKind::kSrs)
     return std::make_unique<SrsLattice>(
         chain, *arm.srs, path, problem, budget, std::vector<ArmPlane>(), std::nullopt,
@@ -31,13 +35,14 @@ std::unique_ptr<Lattice> make_lattice(const Chain& chain, const ArmClass& arm, c
 }
 
 PathProblem on_all_layers(PathProblem problem, const ArmClass& arm) {
-  if (!arm.srs) problem.resolution.knot = 0;
+  if (!arm.srs || !problem.roll) problem.resolution.knot = 0;
   return problem;
 }
 
-Resolution resolution_in_effect(Resolution resolution, const ArmClass& arm) {
+Resolution resolution_in_effect(Resolution resolution, const PathProblem& of, const ArmClass& arm) {
   if (arm.srs) {
     resolution.arc.reset();
+    resolution.knot = of.limits.step_error ? 0 : resolution.knot_of_grids(of.roll.has_value());
   } else {
     resolution.arc = resolution.arc_of_nodes();
     resolution.knot = resolution.knot_of_arcs();

@@ -34,13 +34,11 @@ std::vector<UnusedKey> unused_keys(const Chain& chain, const ArmClass& arm) {
     keys = {{"resolution", "arc", "the arm is S-R-S, and `dphi` divides its self-motion"}};
   const char* const no_roll = "no roll of an arm of seven joints is free";
   if (!chain.free_roll) keys.push_back({"resolution", "droll", no_roll});
-  if (!chain.free_roll && arm.srs) keys.push_back({"resolution", "knot", no_roll});
   if (!chain.tool_may_turn()) keys.push_back({"limits", "roll_slope", "no roll is free"});
   return keys;
 }
 
-std::vector<UnusedKey> unused_knot(const ArmClass& arm, const char* what) {
-  if (arm.srs) return {};
+std::vector<UnusedKey> unused_knot(const char* what) {
   return {{"resolution", "knot", std::string(what) + " have nodes at every layer of the path"}};
 }
 

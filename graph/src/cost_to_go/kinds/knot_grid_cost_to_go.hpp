@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <array>
 #include <memory>
 #include <utility>
 #include <vector>
 
+#include "cost_to_go/kernels/relax.hpp"
+#include "cost_to_go/kinds/joint_box.hpp"
 #include "cost_to_go/kinds/layer_values.hpp"
 #include "swivel/core/lattice/kinds/knot_grid.hpp"
 
@@ -27,6 +30,10 @@ class KnotGridCostToGo final : public LayerValues {
   [[nodiscard]] double relax_one_forward(int layer, int slot, const Values& before) override;
   void find_stale(int layer, const std::vector<Change>& ahead, std::vector<int>& stale) override;
   [[nodiscard]] std::size_t many(int layer) const override;
+  /// Branches may change between shorter steps, and joints turn further in several.
+  [[nodiscard]] bool more_knots_allow_more() const override { return true; }
+  /// Returns the rolls that a step may join to a roll, the nearest ones first.
+  [[nodiscard]] const std::vector<int>& nearest_first(int step, int rank, bool forward);
   // solving it again takes less than fresh pages
   void done_with(int layer) override { forget(layer); }
 
@@ -39,13 +46,36 @@ class KnotGridCostToGo final : public LayerValues {
     Values value;
     // [rank][solution]: first finite one, and behind the last
     std::vector<std::pair<int, int>> finite;
+    // [rank][solution][block of kTile]: where the nodes with finite values lie, and the least value
+    std::vector<JointBox> boxes;
+    Values least;
   };
-  void runs_of(const LayerNodes& nodes, int solution);
+  static constexpr int kTile = 16;  // nodes that are relaxed together
+  /// What becomes of the branch along an edge: nothing, or KnotGrid::kFlips.
+  static constexpr std::array<int, 3> kFlips{0, KnotGrid::kFlips[0], KnotGrid::kFlips[1]};
+  /// Returns whether the node at entry k of an IK solution may have edges that change a bit of the
+  /// branch; true for none.
+  [[nodiscard]] bool may_flip(int bit, const LayerNodes& nodes, int solution, int k) const {
+    if (bit == 0) return true;
+    return KnotGrid::is_near_singular(bit == kShoulderBit
+                                          ? nodes.q(solution, 1)[k] + lattice_->arm().shoulder.shift
+                                          : nodes.q(solution, 5)[k] + lattice_->arm().wrist.shift);
+  }
+  /// Finds runs of nodes that may change a bit of the branch.
+  void runs_of(const LayerNodes& nodes, int solution, int bit);
   /// Calls visit(slot) for the slots of `layer` that the window of `step` joins to the only node of
   /// the neighbouring layer `other`, which is a given start or end.
   template <class Visit>
   void each_beside_given(int step, int layer, int other, const Visit& visit);
-  void take_around(const Values& values);
+  void take_around(int layer, const RelaxTask<double>& task, const Values& values);
+  /// Sets what is known of the finite values of a row, whose joints `theirs` has.
+  void describe_row(const LayerNodes& theirs, const RelaxTask<double>& task, Around& around,
+                    int row);
+  /// Relaxes a tile of nodes of an IK solution, the entries `begin` ... `end` - 1 of the circle of
+  /// arm angles, with those of a row that a window joins to them and that may lower one of `best`.
+  void relax_tile(const LayerNodes& own, int solution, const std::pair<int, int>& tile,
+                  const JointBox& box, const Around& around, int row, int window,
+                  RelaxTask<double>& task, double* best);
   /// Calls visit(slot b, its joints) for the nodes b of a neighbouring layer that a node may be
   /// joined to, removed or not, whose worth(b) is true. worth() must be false for slots without a
   /// node.
@@ -54,8 +84,10 @@ class KnotGridCostToGo final : public LayerValues {
 
   const KnotGrid* lattice_;
   int angles_, solutions_, pad_;
-  Around around_;
-  std::vector<std::pair<int, int>> runs_;  // runs of arm angles: first, and behind the last
+  int around_layer_ = -1;                     // the layer that around_ is of
+  std::array<Around, kFlips.size()> around_;  // of the nodes that may change that bit
+  std::vector<int> near_;                     // what nearest_first() returns
+  std::vector<std::pair<int, int>> runs_;     // runs of arm angles: first, and behind the last
   struct Solved {
     std::vector<LayerNodes> of_roll;  // [rank]
     std::vector<char> done;

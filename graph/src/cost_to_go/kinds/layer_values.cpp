@@ -114,7 +114,7 @@ void LayerValues::bound_by_coarser(CostToGo& coarser, std::span<const int> layer
   auto* const other = dynamic_cast<LayerValues*>(&coarser);
   if (!other) return;
   share_nodes(*other, layer_here);
-  if (lattice().has_node_costs() || lattice().is_closed()) return;
+  if (lattice().has_node_costs() || lattice().is_closed() || more_knots_allow_more()) return;
   if (other->forward_.empty()) other->go_forward({}, {});
   go_forward(other->forward_, layer_here);
   by_coarser_ = true;

@@ -58,6 +58,8 @@ class LayerValues : public CostToGo {
   /// Returns the number of nodes, stale or changed in the next layer, beyond which a layer is
   /// solved as a whole in less time than node by node.
   [[nodiscard]] virtual std::size_t many(int layer) const = 0;
+  /// Returns whether a lattice with more knots may have paths that those of this one do not bound.
+  [[nodiscard]] virtual bool more_knots_allow_more() const { return false; }
   /// Takes what is kept of the nodes of layers that a coarser cost-to-go of the same class has too.
   virtual void share_nodes(LayerValues& coarser, std::span<const int> layer_here) {
     static_cast<void>(coarser), static_cast<void>(layer_here);

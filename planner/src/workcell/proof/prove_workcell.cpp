@@ -96,8 +96,8 @@ class WorkcellProof {
     WorkcellCertificate certificate;
     for (std::size_t k = 0; k < 2; ++k) {
       certificate.windings[k] = arms_[k]->lattice->joints_with_windings();
-      certificate.resolution[k] =
-          resolution_in_effect(arms_[k]->of_lattice.resolution, arms_[k]->robot.arm_class());
+      certificate.resolution[k] = resolution_in_effect(
+          arms_[k]->of_lattice.resolution, arms_[k]->of_lattice, arms_[k]->robot.arm_class());
       certificate.edges[k] = arms_[k]->problem.limits.edges;
     }
     certificate.layers = arms_[0]->lattice->layers();

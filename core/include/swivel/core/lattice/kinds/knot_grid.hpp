@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <array>
+#include <cmath>
 #include <memory>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "swivel/core/answer/plan.hpp"
@@ -10,28 +13,31 @@
 
 namespace swivel {
 
-/// Lattice of an S-R-S arm whose tool may stand turned about its own z axis: at each layer the arm
-/// angle and the *roll* are chosen together. docs/model.md defines it.
+class PoseNewton;
+
+/// Lattice of an S-R-S arm whose layers are *knots*, every few layers of the tool's path
+/// (`resolution.knot`): at each the arm angle is chosen, and the *roll* if the tool may stand
+/// turned about its own z axis. docs/model.md defines it.
 ///
-/// Its layers are *knots*, every few layers of the tool's path (`resolution.knot`). One step of the
-/// roll grid moves the joints by far more than a layer of the path does, so that a change of roll
-/// between neighbouring layers would never pay. Between two knots roll and arm angle change
-/// linearly along the path, each the short way, and the joints of the layers between are solved
-/// exactly. What nodes and moves must keep holds at all of these layers
-/// (Lattice::has_layers_between). The branch stays the same along an edge: no joint flips while the
-/// tool turns.
+/// A step of either grid moves the joints by far more than a layer of the path does, so that a
+/// change between neighbouring layers would seldom pay. Between two knots the joints follow the
+/// chord from node to node, evenly over the travel, each layer's moved onto its tool pose by Newton
+/// steps of least weighted norm; the roll changes linearly. What nodes and moves must keep holds at
+/// all of these layers (Lattice::has_layers_between).
 ///
 /// Nodes of one roll are those of an SrsLattice for a tool turned by that roll. Their arm angles
 /// are measured from the path's carried plane, turned by the smallest rotation that takes the tool
 /// as the path has it to the turned tool. A slot is (rank of the roll, branch, winding, j). Rank 0
 /// is the roll nearest to none, or to that of a given start (of a given end without a start), so
-/// that among equally good paths the one that turns least wins. Edges lead to rolls and arm angles
-/// within roll_slope and arm_slope times the path length between the knots. Both are rounded down
-/// to whole cells, with at least one cell of arm angles; rolls are not rounded if waypoints have
-/// windows, nor on the last step to a given end. Bounded joints of more than a turn are circles
-/// if that is asked for and SrsLattice::possible_circles() allows it. Immutable once made.
+/// that among equally good paths the one that turns least wins. Edges lead to arm angles as far
+/// away as the steps between the knots allow together (SrsLattice::window()), and to rolls within
+/// roll_slope times the path length, rounded down to whole cells, unless waypoints have windows or
+/// the step leads to a given end. The branch stays, or changes one bit near its singular pose
+/// (may_flip()). Bounded joints of more than a turn are circles
+/// if that is asked for and no arcs are; no edge moves one by half a turn. Immutable once made.
 class KnotGrid final : public Lattice {
  public:
+  ~KnotGrid() override;
   /// Returns the lattice of the whole path. `chain`, `arm` and `path` must outlive it.
   /// `last_joint`: where joint 7 rests, rad (last_joint_at_rest()); there is no roll to choose
   /// then, because joint 7 would only undo it. `circles`: whether joints that can be circles are.
@@ -57,6 +63,7 @@ class KnotGrid final : public Lattice {
   [[nodiscard]] const SrsLattice& at_roll(int rank) const {
     return turned_[static_cast<std::size_t>(rank)]->lattice;
   }
+  [[nodiscard]] const SrsArm& arm() const { return *arm_; }
   [[nodiscard]] int rank_of(int layer, int slot) const { return given(layer) ? 0 : slot / width_; }
   /// Returns the slot within the lattice at_roll(rank_of(layer, slot)).
   [[nodiscard]] int inner(int layer, int slot) const {
@@ -80,13 +87,32 @@ class KnotGrid final : public Lattice {
     return windows_[static_cast<std::size_t>(step)].phi;
   }
   [[nodiscard]] int widest_phi_window() const { return widest_; }
+  /// The bits of branches of which an edge may change one.
+  static constexpr std::array<int, 2> kFlips{kShoulderBit, kWristBit};
+  /// Returns whether an edge from or to a node with joints `q`, rad, may change a bit of the branch
+  /// (one of kFlips): whether joint 2 or 6 is near its singular pose.
+  [[nodiscard]] bool may_flip(int bit, const Config& q) const {
+    return is_near_singular(bit == kShoulderBit ? arm_->shoulder_angle(q) : arm_->wrist_angle(q));
+  }
+  /// Returns may_flip() of a node that has an angle, rad, from the singular pose of that joint.
+  [[nodiscard]] static bool is_near_singular(double angle) {
+    constexpr double kNear = 0.5;  // rad
+    return std::abs(angle - kPi * std::round(angle / kPi)) < kNear;
+  }
 
   [[nodiscard]] const ToolPath& path_of_rows() const override { return *whole_; }
   /// Returns the layers of the whole path that are layers of the lattice.
-  [[nodiscard]] const std::vector<int>& knots() const { return knots_; }
+  [[nodiscard]] const std::vector<int>& knots() const { return layout_.knots; }
   [[nodiscard]] int layer_of_rows(int layer) const override {
-    return knots_[static_cast<std::size_t>(layer)];
+    return layout_.knots[static_cast<std::size_t>(layer)];
   }
+  [[nodiscard]] bool can_halve(int step) const override {
+    return layer_of_rows(step + 1) - layer_of_rows(step) > 1;
+  }
+  /// Inserted knots have the rolls and arm angles of the others, in the same slots.
+  [[nodiscard]] std::unique_ptr<Lattice> with_knots(const std::set<int>& steps,
+                                                    const Budget& budget) const override;
+  [[nodiscard]] std::vector<std::set<int>> halvings() const override { return layout_.halvings; }
   /// Returns the rows at all layers of the whole path along a path of the lattice, from layer 0 to
   /// the path's last slot, with each circle in a turn as SrsLattice::path_joints() has it; an empty
   /// list if off_limits() has any.
@@ -98,7 +124,9 @@ class KnotGrid final : public Lattice {
   /// SrsLattice.
   [[nodiscard]] Joints off_limits(const std::vector<int>& slots) const override;
   [[nodiscard]] std::unique_ptr<Lattice> with_windings(const Joints& joints) const override;
-  [[nodiscard]] std::vector<Joints> joints_with_windings() const override { return told_apart_; }
+  [[nodiscard]] std::vector<Joints> joints_with_windings() const override {
+    return layout_.told_apart;
+  }
 
   [[nodiscard]] LatticeInfo describe() const override;
   [[nodiscard]] GridPlace grid_place(int layer, int slot) const override {
@@ -120,6 +148,8 @@ class KnotGrid final : public Lattice {
   [[nodiscard]] NodeFault fault(int layer, int slot) const override {
     return at(layer, slot).fault(layer, inner(layer, slot));
   }
+  /// Where no roll is free, returns that of the SrsLattice.
+  [[nodiscard]] bool proved_unreachable(int layer) const override;
   /// If no roll is within reach, returns the values of the roll that misses least.
   [[nodiscard]] std::optional<Reach> out_of_reach(int layer) const override;
   [[nodiscard]] double phi(int layer, int slot) const override {
@@ -163,14 +193,31 @@ class KnotGrid final : public Lattice {
                                                   const Config& qb) const override;
 
  private:
-  struct Knots {
-    std::vector<int> layers;
-    std::unique_ptr<const ToolPath> path;
+  /// The rolls that nodes may have.
+  struct Rolls {
+    // In the order of their grid, rad; with windows, fractions of a window from 0 to 1.
+    std::vector<double> values;
+    // The rank of each entry of `values`, and the entry of each rank.
+    std::vector<int> rank, value_of;
   };
-  KnotGrid(const Chain& chain, const SrsArm& arm, const ToolPath& path,
-              const PathProblem& problem, const Budget& budget, Knots knots,
-              std::optional<double> last_joint, const Joints& wound);
-  static Knots knots_along(const ToolPath& path, const Resolution& resolution);
+  /// What tells lattices of one path apart.
+  struct Layout {
+    std::vector<int> knots;
+    std::optional<double> last_joint;
+    Joints wound{};  // no circles
+    std::vector<Joints> told_apart;
+    std::vector<std::set<int>> halvings;
+    Rolls rolls;  // none before the first lattice has chosen them
+  };
+  KnotGrid(const Chain& chain, const SrsArm& arm, const ToolPath& path, const PathProblem& problem,
+           const Budget& budget, Layout layout);
+  KnotGrid(const Chain& chain, const SrsArm& arm, const ToolPath& path, const PathProblem& problem,
+           const Budget& budget, Layout&& layout, std::unique_ptr<const ToolPath> path_of_knots);
+  [[nodiscard]] std::unique_ptr<Lattice> laid_out(Layout layout, const Budget& budget) const;
+  /// Returns the path of the knots for a tool that is turned by `rolls` there, rad.
+  [[nodiscard]] ToolPath at_rolls(const std::vector<double>& rolls) const;
+  /// Returns where joint 7 rests, rad, if it does.
+  [[nodiscard]] const std::optional<double>& last_joint() const { return layout_.last_joint; }
   [[nodiscard]] bool step_error_allowed(int, int, int) const override { return true; }
   [[nodiscard]] const SrsLattice& at(int layer, int slot) const {
     const Given* const only = given(layer);
@@ -183,8 +230,8 @@ class KnotGrid final : public Lattice {
   /// Returns the turns of the circles along the rows of a path of so many slots.
   [[nodiscard]] CircleTurns turns_along(const std::vector<TrajectoryRow>& rows,
                                         std::size_t slots) const;
-  void choose_rolls(double nominal, double droll);
-  /// Returns the roll, rad, that an entry of values_ stands for at each layer.
+  void choose_rolls(double droll);
+  /// Returns the roll, rad, that an entry of Rolls::values stands for at each layer.
   [[nodiscard]] std::vector<double> rolls_along(int value) const;
   [[nodiscard]] double way(int step) const;
   void find_near(const PathProblem& problem);
@@ -201,10 +248,15 @@ class KnotGrid final : public Lattice {
   /// Returns the roll at layer i of the whole path, rad: the chosen one, or what it becomes with
   /// joint 7 at rest.
   [[nodiscard]] double roll_at(int i, const Config& q, double chosen) const;
-  /// Returns the joints at layer i of the whole path, near those of the layer before; if there are
-  /// none, writes the reason to `fault`.
-  [[nodiscard]] std::optional<Config> solve(int i, double roll, double phi, int branch,
-                                            const Config& near, InterpolatedEdge& fault) const;
+  /// Returns the joints at layer i of the whole path to which Newton steps of least norm lead from
+  /// those on a chord; if there are none, writes the reason to `fault`.
+  [[nodiscard]] std::optional<Config> image(int i, double roll, const Config& chord,
+                                            InterpolatedEdge& fault) const;
+  /// Returns the row of joints at layer i of the whole path at which the tool is turned by `roll`.
+  [[nodiscard]] TrajectoryRow row(int i, const Config& q, double roll) const;
+  /// Appends the slots of a run of the next layer to which an edge may change a bit of the branch;
+  /// all of them for none.
+  void add_flips(int layer, int bit, const SlotRun& run, std::vector<SlotRun>& out) const;
 
   struct Turned {
     Turned(std::vector<double> by, ToolPath knots, const Chain& chain, const SrsArm& arm,
@@ -243,22 +295,18 @@ class KnotGrid final : public Lattice {
   };
 
   const SrsArm* arm_;
-  std::optional<double> last_joint_;
+  Layout layout_;
   Joints circles_{};
-  std::vector<Joints> told_apart_;      // joints_with_windings()
-  std::optional<PathProblem> problem_;  // for with_windings(), if there are circles
+  PathProblem problem_;
   const ToolPath* whole_;
-  std::vector<int> knots_;
   std::unique_ptr<const ToolPath> knot_path_;
   std::vector<ArmPlane> planes_;  // by layer of the whole path, for a tool that is not turned
+  std::unique_ptr<const PoseNewton> newton_;
+  Config scale2_;  // squares of the weights of Newton steps
   // Step bounds of the whole path, by step; one entry if all are alike.
   std::vector<Config> whole_step_bounds_;
-  bool circle_ = false;           // rolls cover a whole turn
-  bool windows_of_roll_ = false;  // some waypoint has a window of rolls
-  // Rolls in the order of their grid, rad; with windows, fractions of a window from 0 to 1.
-  std::vector<double> values_;
-  // The rank of each entry of values_, and the entry of each rank.
-  std::vector<int> rank_, value_of_;
+  bool circle_ = false;                          // rolls cover a whole turn
+  bool windows_of_roll_ = false;                 // some waypoint has a window of rolls
   std::vector<std::unique_ptr<Turned>> turned_;  // by rank
   std::unique_ptr<const Given> start_, last_;
   int width_ = 0, widest_ = 1;

@@ -12,22 +12,25 @@ namespace swivel {
 
 struct ArmClass;
 
-/// Returns the lattice of a problem's path for an arm of class `arm`: a grid of arm angles
-/// (SrsLattice), of rolls and arm angles if the tool may turn (KnotGrid), or arcs of self-motion
-/// (ArcLattice). Throws InputError where the lattice does, also for limits.arm_slope with an arm
-/// that has no arm angle; Stopped. `chain`, `arm` and `path` must outlive the lattice.
+/// Returns the lattice of a problem's path for an arm of class `arm`: of an S-R-S arm a grid of arm
+/// angles, and of rolls if the tool may turn, at knots (KnotGrid), or of arm angles at every layer
+/// (SrsLattice) with a `resolution.knot` of 0 or `limits.step_error`, whose estimate is of moves
+/// between neighbouring layers; of others arcs of self-motion (ArcLattice). Throws InputError where
+/// the lattice does, also for limits.arm_slope with an arm that has no arm angle; Stopped. `chain`,
+/// `arm` and `path` must outlive the lattice.
 [[nodiscard]] std::unique_ptr<Lattice> make_lattice(const Chain& chain, const ArmClass& arm,
                                                     const ToolPath& path,
                                                     const PathProblem& problem,
                                                     const Budget& budget = {});
 
-/// Returns a problem whose lattice has nodes at every layer, of an arm without an arm angle: that
-/// of a stroke in several runs or of an arm of two, whose search cannot halve steps between knots,
-/// or of a path whose states cost something by the caller's hook (StateCost).
+/// Returns a problem whose lattice has nodes at every layer, unless the arm is S-R-S and its roll
+/// free: that of a stroke in several runs or of an arm of two, whose search cannot halve steps
+/// between knots, or of a path whose states cost something by the caller's hook (StateCost).
 [[nodiscard]] PathProblem on_all_layers(PathProblem problem, const ArmClass& arm);
-/// Returns the resolution of an arm's lattice for a record: `arc` and `knot` as they are in effect
-/// without an arm angle, and no `arc` with one.
-[[nodiscard]] Resolution resolution_in_effect(Resolution resolution, const ArmClass& arm);
+/// Returns a resolution of the lattice of a path for a record: `knot` and `arc` as they are in
+/// effect, and no `arc` with an arm angle. `of`: says what else the lattice is of.
+[[nodiscard]] Resolution resolution_in_effect(Resolution resolution, const PathProblem& of,
+                                              const ArmClass& arm);
 
 /// Returns where joint 7 may rest, rad, if the tool of an S-R-S arm may turn freely about the axis
 /// of that joint: as far from its limits as possible. The other six joints alone then put the tool

@@ -21,9 +21,8 @@ struct UnusedKey {
 /// free.
 [[nodiscard]] std::vector<UnusedKey> unused_keys(const Chain& chain, const ArmClass& arm);
 /// Returns `resolution.knot` where the lattice of a path, a stroke or an arm of two has nodes at
-/// every layer all the same: of arms without an arm angle all but open paths. `what` names the
-/// others.
-[[nodiscard]] std::vector<UnusedKey> unused_knot(const ArmClass& arm, const char* what);
+/// every layer all the same. `what` names those of which it is one.
+[[nodiscard]] std::vector<UnusedKey> unused_knot(const char* what);
 /// Returns the keys that are in both lists.
 [[nodiscard]] std::vector<UnusedKey> unused_by_both(const std::vector<UnusedKey>& one,
                                                     const std::vector<UnusedKey>& other);
