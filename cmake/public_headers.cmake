@@ -69,6 +69,7 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/planner/study/advise.hpp
   swivel/planner/study/campaign.hpp
   swivel/planner/study/place.hpp
+  swivel/planner/study/plan_many.hpp
   swivel/planner/verify/check.hpp
   swivel/planner/verify/complete_rows.hpp
   swivel/planner/workcell/check_workcell.hpp

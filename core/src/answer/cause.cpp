@@ -85,6 +85,8 @@ const char* to_string(Cause::Kind kind) {
       return "not_closed";
     case Cause::Kind::kCheck:
       return "check";
+    case Cause::Kind::kNotAsked:
+      return "not_asked";
     case Cause::Kind::kNone:
       break;
   }
@@ -127,6 +129,8 @@ std::string words(const Cause& cause) {
       return "no path closes";
     case Cause::Kind::kCheck:
       return "check " + cause.check + (cause.between_layers ? " between layers" : "");
+    case Cause::Kind::kNotAsked:
+      return "not asked for";
     case Cause::Kind::kNone:
       break;
   }

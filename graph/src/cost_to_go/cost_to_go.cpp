@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "swivel/graph/cost_to_go/cost_to_go.hpp"
 
+#include <utility>
+
 #include "cost_to_go/best_start.hpp"
 
 namespace swivel {
@@ -9,7 +11,7 @@ bool CostToGo::restart(const Budget& budget) {
   budget_ = budget;
   verdicts_.clear();
   ik_nodes_ = edges_ = 0;
-  if (unremoved_ == Unremoved::kSaved) restore();
+  if (unremoved_ == Unremoved::kSaved) restore(*saved_);
   return unremoved_ != Unremoved::kUnknown;
 }
 
@@ -19,7 +21,17 @@ void CostToGo::save_unremoved() {
     unremoved_ = Unremoved::kUnknown;
     return;
   }
-  save();
+  saved_ = save();
+  unremoved_ = Unremoved::kSaved;
+}
+
+std::shared_ptr<const CostToGo::SavedValues> CostToGo::values_without_removals() {
+  save_unremoved();
+  return unremoved_ == Unremoved::kSaved ? saved_ : nullptr;
+}
+
+void CostToGo::begin_with(std::shared_ptr<const SavedValues> values) {
+  saved_ = std::move(values);
   unremoved_ = Unremoved::kSaved;
 }
 

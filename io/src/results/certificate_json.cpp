@@ -122,7 +122,8 @@ Cause witness_of(const Reader& read, const Parsed& json, const std::string& key)
   Cause cause;
   read.only(json, key, {"cause", "joint", "side", "bodies", "check"});
   const std::string name = read.text(read.at(json, "cause", key), key + "cause");
-  for (int kind = 0; kind <= static_cast<int>(Cause::Kind::kCheck); ++kind)
+  for (int kind = static_cast<int>(Cause::Kind::kReach);
+       kind <= static_cast<int>(Cause::Kind::kCheck); ++kind)
     if (name == to_string(static_cast<Cause::Kind>(kind)))
       cause.kind = static_cast<Cause::Kind>(kind);
   if (cause.kind == Cause::Kind::kNone)

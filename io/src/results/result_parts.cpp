@@ -54,7 +54,7 @@ Json text_or_null(const std::string& text) {
 }
 
 Json cause_json(const Cause& cause) {
-  if (cause.kind == Cause::Kind::kNone) return nullptr;
+  if (cause.kind == Cause::Kind::kNone || cause.kind == Cause::Kind::kNotAsked) return nullptr;
   return {{"cause", to_string(cause.kind)},
           {"joint", text_or_null(cause.joint)},
           {"other_joints", cause.other_joints},

@@ -72,7 +72,7 @@ class RegionSides {
 /// Returns a lattice in which the turns of joints are told apart as a certificate says, list by
 /// list; null where a list has no joint, one of less than two turns, or one that was told apart
 /// before.
-[[nodiscard]] std::unique_ptr<Lattice> told_apart(std::unique_ptr<Lattice> lattice,
+[[nodiscard]] std::shared_ptr<Lattice> told_apart(std::shared_ptr<Lattice> lattice,
                                                   const std::vector<Lattice::Joints>& windings);
 
 /// Returns a cut of a lattice in which no path is left once what `verdicts` call removed is left

@@ -250,7 +250,7 @@ void require_same_layout(const PathProblem& problem, const ArmClass& arm,
   require(layers == stated.layers, "the number of layers");
 }
 
-std::unique_ptr<Lattice> told_apart(std::unique_ptr<Lattice> lattice,
+std::shared_ptr<Lattice> told_apart(std::shared_ptr<Lattice> lattice,
                                     const std::vector<Lattice::Joints>& windings) {
   constexpr double kSlack = 1e-3;  // rad, that a range of two turns may be narrower by rounding
   Lattice::Joints before{};
@@ -289,7 +289,7 @@ CertificateCheck verify_certificate(const PreparedRobot& robot, const PathProble
   robot.require_prepared_for(problem);
   const Chain& chain = robot.arm().chain;
   const ToolPath path = path_within_scale(problem, chain, budget);
-  std::unique_ptr<Lattice> lattice = make_lattice(chain, robot.arm_class(), path, problem, budget);
+  std::shared_ptr<Lattice> lattice = make_lattice(chain, robot.arm_class(), path, problem, budget);
   for (const std::set<int>& steps : certificate.halvings) {
     std::unique_ptr<Lattice> finer;
     if (steps.empty() || *steps.begin() < 0 || *steps.rbegin() + 1 >= lattice->layers() ||

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "plan/told_turns.hpp"
+#include "plan/layout/told_turns.hpp"
 
 namespace swivel {
 

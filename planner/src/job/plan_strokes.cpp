@@ -17,12 +17,12 @@
 #include "job/transitions/job_transitions.hpp"
 #include "measure/measure_rows.hpp"
 #include "plan/answer.hpp"
-#include "plan/keeps_branch.hpp"
+#include "plan/layout/keeps_branch.hpp"
 #include "plan/search.hpp"
 #include "plan/search_on_knots.hpp"
 #include "plan/search_settings.hpp"
 #include "plan/stopwatch.hpp"
-#include "plan/told_turns.hpp"
+#include "plan/layout/told_turns.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
@@ -167,7 +167,7 @@ struct PlannedRun {
   EdgeRule rule;
   ToolPath path;
   bool other_planes = false;  ///< arm angles are not measured from the path's own planes
-  std::unique_ptr<Lattice> lattice;
+  std::shared_ptr<Lattice> lattice;
   /// What is said of knots; none of a lattice whose steps cannot be halved.
   std::optional<LatticeInfo::Knots> knots;
   /// What the search of the job says of the steps between knots.

@@ -11,11 +11,12 @@
 #include "diagnosis/diagnosis.hpp"
 #include "measure/measure_rows.hpp"
 #include "plan/answer.hpp"
+#include "plan/layout/lattice_cache.hpp"
+#include "plan/layout/told_turns.hpp"
 #include "plan/search.hpp"
 #include "plan/search_on_knots.hpp"
 #include "plan/search_settings.hpp"
 #include "plan/stopwatch.hpp"
-#include "plan/told_turns.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/memory.hpp"
 #include "swivel/core/base/timeline.hpp"
@@ -117,49 +118,17 @@ struct Planner::Impl {
   std::shared_ptr<const PreparedRobot> last_robot;  // prepared with other attached bodies
   std::optional<World> world;                       // depends on robot, scene and limits
   bool world_is_old = true;                         // `world` only serves to make the next one from
+  std::shared_ptr<LatticeCache> cache;              // null: lattices are this planner's own
   /// What depends on the task and on the pose of the path's frame.
   struct Layout {
-    /// `hooks`: may tell the turns of joints apart, and say what the states of all layers cost.
-    Layout(const PreparedRobot& robot, const PathProblem& problem, const Hooks& hooks,
-           const Budget& budget)
-        : path(path_within_scale(problem, robot.arm().chain, budget)),
-          turns_told_apart(may_tell_turns_apart(hooks)),
-          states_cost(hooks.cost != nullptr),
-          first{make_coaxial_lattice(robot.arm().chain, robot.arm_class(), path, problem, budget),
-                nullptr},
-          coaxial(first.lattice != nullptr) {
-      if (!coaxial)
-        first.lattice = free_lattice(robot, problem, budget);
-      else if (turns_told_apart)
-        first.lattice = with_all_windings(std::move(first.lattice));
+    explicit Layout(std::shared_ptr<const TaskLattice> own)
+        : task(std::move(own)), first{task->first(), nullptr} {}
+    explicit Layout(std::shared_ptr<LatticeCache::Entry> entry) : Layout(entry->lattice()) {
+      shared = std::move(entry);
     }
-    /// Returns the lattice of the task in which no joint rests.
-    [[nodiscard]] std::unique_ptr<Lattice> free_lattice(const PreparedRobot& robot,
-                                                        const PathProblem& problem,
-                                                        const Budget& budget) const {
-      const auto make = [&](const PathProblem& of) {
-        return make_lattice(robot.arm().chain, robot.arm_class(), path, of, budget);
-      };
-      auto lattice = states_cost ? make(on_all_layers(problem, robot.arm_class())) : make(problem);
-      return turns_told_apart && robot.arm_class().srs ? with_all_windings(std::move(lattice))
-                                                       : std::move(lattice);
-    }
-    /// Returns whether plans with these hooks search the same lattices.
-    [[nodiscard]] bool serves(const Hooks& hooks) const {
-      return turns_told_apart == may_tell_turns_apart(hooks) &&
-             states_cost == (hooks.cost != nullptr);
-    }
-    ToolPath path;
-    // Whether the lattices of S-R-S arms tell the turns of all joints apart, because the caller's
-    // hooks may.
-    bool turns_told_apart;
-    // Whether states cost something by the caller's hook: those of all layers, so that there are no
-    // knots.
-    bool states_cost;
+    std::shared_ptr<LatticeCache::Entry> shared;  // null: `task` is this planner's own
+    std::shared_ptr<const TaskLattice> task;
     Searched first;  // searched by every plan
-    // Whether joint 7 rests in `first` (make_coaxial_lattice()), so that another lattice may have a
-    // path even if `first` has none.
-    bool coaxial;
     /// The lattice that the last plan searched after `first`, because the path there left the
     /// limits of joints that are treated as circles, each in its nearest turn, or because joint 7
     /// at rest had no path.
@@ -179,12 +148,18 @@ struct Planner::Impl {
   std::optional<Executor> executor;
   int executor_threads = 0;  // number of threads that `executor` was made with
 
-  bool single_use = false;  // no plan follows, so that nothing is remembered
+  bool single_use = false;  // no plan follows, so that nothing is kept for it
+  bool remembers = true;    // what is found out of obstacles is kept for the plans that follow
   // The path of the last plan, see PlanView::path.
   SlotPath path;
   bool viewable = false, was_eager = false;
 
   explicit Impl(PathProblem p) : problem(std::move(p)), met(problem.scene.size(), 1) {}
+
+  void plan_once() {
+    single_use = true;
+    remembers = false;
+  }
 
   // --- changes
   void path_changed() {
@@ -246,11 +221,11 @@ struct Planner::Impl {
   }
   void set_task(const Task& task) {
     Task& own = problem;
-    if (task == own) return;
+    if (same_task(task, own)) return;
     Task same_kinematics = own;
     same_kinematics.limits = Lattice::with_clearances(own.limits, task.limits);
     own = task;
-    if (layout && task == same_kinematics) {
+    if (layout && !layout->shared && same_task(task, same_kinematics)) {
       layout->first.lattice->take_clearances(task.limits);
       memory = {};
       scene_changed();
@@ -279,13 +254,17 @@ struct Planner::Impl {
     executor_threads = wanted;
     return *executor;
   }
-  /// `hooks`: as Layout takes them.
+  /// `hooks`: as TaskLattice takes them.
   void lay_out(const Hooks& hooks, const Budget& budget, PlanResult& result) {
     Stopwatch watch;
     budget.tell(Stage::kLattice);
     require_joints_that_move(*robot, problem);
-    if (layout && !layout->serves(hooks)) path_changed();
-    if (!layout) layout = std::make_unique<Layout>(*robot, problem, hooks, budget);
+    if (layout && !layout->task->serves(hooks)) path_changed();
+    if (!layout && cache)
+      layout = std::make_unique<Layout>(cache->of(*robot, problem, hooks, budget));
+    if (!layout)
+      layout = std::make_unique<Layout>(
+          std::make_shared<const TaskLattice>(*robot, problem, hooks, budget));
     layout->second.reset();
     result.time_ms["lattice"] = watch.lap();
     if (world_is_old) world = World(world ? *world : robot->world(), problem, budget);
@@ -301,7 +280,7 @@ struct Planner::Impl {
               : unused_key_warnings(unused_knot(hooks.cost ? "paths whose states cost something"
                                                            : "paths with limits.step_error"),
                                     problem),
-          path_warnings(*robot, problem, layout->path, *world)})
+          path_warnings(*robot, problem, layout->task->path(), *world)})
       result.warnings.insert(result.warnings.end(), lines.begin(), lines.end());
     SpecialPairs pairs;
     pairs.add(*world);
@@ -314,13 +293,13 @@ struct Planner::Impl {
                PlanResult& result) {
     was_eager = is_eager(options);
     // The cost of a state by the caller's hook may depend on joint 7, which must then be free.
-    const bool rests = layout->coaxial && !options.hooks.cost;
-    if (rests || !layout->coaxial) {
-      Found found = search_knots(layout->first, !single_use, rule, options, budget, result);
+    const bool rests = layout->task->coaxial() && !options.hooks.cost;
+    if (rests || !layout->task->coaxial()) {
+      Found found = search_knots(layout->first, remembers, rule, options, budget, result);
       found = tell_turns_apart(std::move(found), rule, options, budget, result);
-      if (!layout->coaxial || !found.decided || !found.outcome.path.empty()) return found;
+      if (!layout->task->coaxial() || !found.decided || !found.outcome.path.empty()) return found;
     }
-    layout->second = Searched{layout->free_lattice(*robot, problem, budget), nullptr};
+    layout->second = Searched{layout->task->free_lattice(*robot, problem, budget), nullptr};
     result.lattice = info_of(*layout->second->lattice, robot->arm_class());
     Found found = search_knots(*layout->second, false, rule, options, budget, result);
     return tell_turns_apart(std::move(found), rule, options, budget, result);
@@ -381,6 +360,13 @@ struct Planner::Impl {
     }
     return std::move(on_knots.found);
   }
+  /// Makes the cost-to-go of a lattice that was not searched before.
+  std::unique_ptr<CostToGo> begin_cost_to_go(const Searched& searched, const Budget& budget) {
+    auto made = make_cost_to_go(*searched.lattice, pruning_of(*searched.lattice), budget,
+                                std::move(recycled));
+    if (layout->shared && &searched == &layout->first) layout->shared->begin(*made);
+    return made;
+  }
   /// Searches one lattice. `remembered`: use what earlier plans found out, and keep what this one
   /// does. `knots` as search_lazily() takes it.
   Found search(Searched& searched, bool remembered, const EdgeRule& rule,
@@ -401,8 +387,7 @@ struct Planner::Impl {
       return found;
     }
     std::unique_ptr<CostToGo>& cost_to_go = searched.cost_to_go;
-    if (!cost_to_go)
-      cost_to_go = make_cost_to_go(lattice, pruning_of(lattice), budget, std::move(recycled));
+    if (!cost_to_go) cost_to_go = begin_cost_to_go(searched, budget);
     if (single_use || known.coarser) cost_to_go->set_single_use();
     const bool shares = shares_work(lattice);
     if (shares) threads.start_helpers();
@@ -472,7 +457,7 @@ struct Planner::Impl {
       result.cost = result.lattice.cost = found.outcome.cost;
       result.trajectory = lattice.path_rows(path);
       require_same_turns(lattice, result.trajectory, problem.source);
-      measure_margins(robot->arm().chain, layout->path, result.trajectory, result);
+      measure_margins(robot->arm().chain, layout->task->path(), result.trajectory, result);
       result.cost = cost_of_rows(lattice, path, result.trajectory, result.cost);
       describe_knots(result.cost, lattice, path, problem.resolution.arc_of_nodes(), result.lattice);
     }
@@ -493,8 +478,8 @@ struct Planner::Impl {
     try {
       if (result.status == PlanStatus::kSolved) {
         result.tool_path_error_mm.allowed = problem.limits.tool_path_error;
-        measure_rows(*robot, layout->path, *world, result.trajectory, options.evidence, budget,
-                     result);
+        measure_rows(*robot, layout->task->path(), *world, result.trajectory, options.evidence,
+                     budget, result);
         return;
       }
       Diagnosis& diagnosis = result.diagnosis.emplace();
@@ -508,6 +493,13 @@ struct Planner::Impl {
         path = best_path_to(lattice, *world, rule, *found.deepest, budget, options.hooks);
       result.partial = partial_rows(lattice, path);
       if (!found.deepest) return;
+      if (!options.evidence.cause) {
+        diagnosis.cause.kind = Cause::Kind::kNotAsked;
+        if (*found.deepest < 0) return;
+        diagnosis.reached_layer = *found.deepest;
+        diagnosis.reached_s = lattice.path().layer(*found.deepest).s;
+        return;
+      }
       diagnose(lattice, *world, rule, path, options.evidence.layers, budget, diagnosis,
                options.hooks.check);
       result.evidence.layers = options.evidence.layers;
@@ -572,6 +564,11 @@ Planner::Planner(std::shared_ptr<const PreparedRobot> robot, PathProblem problem
 Planner::~Planner() = default;
 Planner::Planner(Planner&&) noexcept = default;
 Planner& Planner::operator=(Planner&&) noexcept = default;
+
+void Planner::share_lattices(std::shared_ptr<LatticeCache> cache) {
+  impl_->cache = std::move(cache);
+  impl_->remembers = false;
+}
 
 Planner Planner::clone() const {
   return impl_->robot ? Planner(impl_->robot, impl_->problem) : Planner(impl_->problem);
@@ -668,13 +665,13 @@ PlanView Planner::view() const {
           *x.world,
           x.was_eager ? nullptr : &last.cost_to_go->verdicts(),
           x.path,
-          x.layout->states_cost ? on_all_layers(x.problem, x.robot->arm_class()).resolution
-                                : x.problem.resolution};
+          x.layout->task->states_cost() ? on_all_layers(x.problem, x.robot->arm_class()).resolution
+                                        : x.problem.resolution};
 }
 
 PlanResult plan(const PathProblem& problem, const PlanOptions& options) {
   Planner planner(problem);
-  planner.impl_->single_use = true;
+  planner.impl_->plan_once();
   return planner.plan(options);
 }
 
@@ -682,7 +679,7 @@ PlanResult plan(const PreparedRobot& robot, const PathProblem& problem,
                 const PlanOptions& options) {
   // The pointer does not own the robot, which outlives this call.
   Planner planner(std::shared_ptr<const PreparedRobot>(std::shared_ptr<void>(), &robot), problem);
-  planner.impl_->single_use = true;
+  planner.impl_->plan_once();
   return planner.plan(options);
 }
 

@@ -17,7 +17,7 @@ namespace swivel {
 
 /// A lattice and the cost-to-go of its search; null before it was searched.
 struct Searched {
-  std::unique_ptr<Lattice> lattice;
+  std::shared_ptr<Lattice> lattice;
   std::unique_ptr<CostToGo> cost_to_go;
 };
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "measure/measure_rows.hpp"
-#include "plan/keeps_branch.hpp"
+#include "plan/layout/keeps_branch.hpp"
 #include "plan/stopwatch.hpp"
 #include "refine/motion_faults.hpp"
 #include "refine/refine_until_timed.hpp"

@@ -142,6 +142,7 @@ class Adviser {
         finer();
         break;
       case Cause::Kind::kNone:
+      case Cause::Kind::kNotAsked:
       case Cause::Kind::kCheck:
         break;
     }

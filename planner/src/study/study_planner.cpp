@@ -49,7 +49,7 @@ bool StudiedAnswer::known(const Budget& budget) const {
 }
 
 StudyPlanner::StudyPlanner(std::shared_ptr<const PreparedRobot> robot, const Problem& like,
-                           const PlanOptions& options)
+                           const PlanOptions& options, std::shared_ptr<LatticeCache> lattices)
     : robot_(std::move(robot)) {
   validate(like);
   if (like.arms.size() == 2) {
@@ -58,7 +58,9 @@ StudyPlanner::StudyPlanner(std::shared_ptr<const PreparedRobot> robot, const Pro
   }
   const PathProblem first = problem_of_run(like, {0, false});
   robot_->require_prepared_for(first);
-  if (is_path(like)) planner_.emplace(robot_, first);
+  if (!is_path(like)) return;
+  planner_.emplace(robot_, first);
+  if (lattices) planner_->share_lattices(std::move(lattices));
 }
 
 StudiedAnswer StudyPlanner::plan(const Problem& problem, const PlanOptions& options,

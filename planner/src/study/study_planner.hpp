@@ -11,6 +11,8 @@
 
 namespace swivel {
 
+class LatticeCache;
+
 /// The answer to a problem of a campaign or of placements.
 struct StudiedAnswer {
   Answer answer;
@@ -32,9 +34,12 @@ class StudyPlanner {
  public:
   /// `robot`: prepared for `like`; null for two arms, which are prepared for each problem anew.
   /// Throws InvalidArgument for what validate() refuses, for a robot that was prepared otherwise,
-  /// and for options that the kind of problem does not have.
+  /// and for options that the kind of problem does not have. `lattices`: where lattices of paths
+  /// come from, which others share; nothing is then kept of what was found out of obstacles,
+  /// because in scenes that have little in common it costs more than it saves. Null: the planner of
+  /// a path keeps its own, and what it found out.
   StudyPlanner(std::shared_ptr<const PreparedRobot> robot, const Problem& like,
-               const PlanOptions& options);
+               const PlanOptions& options, std::shared_ptr<LatticeCache> lattices = nullptr);
   /// Throws as plan(), plan_job() and plan_workcell() do, but for a given motion that is barred by
   /// an object where it now stands; Stopped.
   [[nodiscard]] StudiedAnswer plan(const Problem& problem, const PlanOptions& options,

@@ -41,7 +41,7 @@ struct ArmInCell {
   ToolPath path;
   PathProblem of_lattice;  // `problem` as the lattice takes it: with nodes at every layer
   bool is_given;
-  std::unique_ptr<Lattice> lattice;
+  std::shared_ptr<Lattice> lattice;
 };
 
 }  // namespace swivel

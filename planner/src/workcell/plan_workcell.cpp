@@ -14,7 +14,7 @@
 #include "plan/search.hpp"
 #include "plan/search_settings.hpp"
 #include "plan/stopwatch.hpp"
-#include "plan/told_turns.hpp"
+#include "plan/layout/told_turns.hpp"
 #include "swivel/collision/arms/inter_arm_world.hpp"
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/base/timeline.hpp"

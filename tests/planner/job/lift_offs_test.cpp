@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "plan/told_turns.hpp"
+#include "plan/layout/told_turns.hpp"
 #include "robots.hpp"
 #include "seed.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
@@ -182,7 +182,7 @@ class Plain {
   PathProblem problem_;
   World world_;
   ToolPath path_;
-  std::unique_ptr<Lattice> lattice_;
+  std::shared_ptr<Lattice> lattice_;
   std::vector<std::vector<Lattice::Node>> nodes_;
   std::vector<std::vector<std::pair<std::size_t, std::size_t>>> edges_;
 };

@@ -7,6 +7,7 @@
 #include <map>
 #include <mutex>
 
+#include "episode_rows.hpp"
 #include "seed.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
@@ -44,19 +45,7 @@ std::vector<EpisodeRow> campaign(const DoorJob& door, const CampaignOptions& opt
 }
 
 void expect_same(const EpisodeRow& a, const EpisodeRow& b) {
-  const std::string what = "episode " + std::to_string(b.episode);
-  EXPECT_EQ(a.episode, b.episode);
-  EXPECT_EQ(a.status, b.status) << what;
-  EXPECT_EQ(a.cost, b.cost) << what;
-  EXPECT_EQ(a.nodes_checked, b.nodes_checked) << what;
-  EXPECT_EQ(a.fcl_calls, b.fcl_calls) << what;
-  EXPECT_EQ(a.tool_path_error_mm_mean, b.tool_path_error_mm_mean) << what;
-  EXPECT_EQ(a.tool_path_error_mm_max, b.tool_path_error_mm_max) << what;
-  EXPECT_EQ(a.failed_s, b.failed_s) << what;
-  EXPECT_EQ(a.cause, b.cause) << what;
-  EXPECT_EQ(a.by, b.by) << what;
-  EXPECT_EQ(a.reason, b.reason) << what;
-  EXPECT_EQ(a.offsets, b.offsets) << what;
+  expect_same_rows(a, b, "episode " + std::to_string(b.episode));
 }
 
 TEST(JobCampaign, EachRowIsThatOfItsJobAtAnyThreadCount) {

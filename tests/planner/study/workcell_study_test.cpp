@@ -8,6 +8,7 @@
 #include <map>
 #include <mutex>
 
+#include "episode_rows.hpp"
 #include "swivel/core/base/rpy.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
@@ -421,19 +422,7 @@ std::vector<EpisodeRow> campaign(const Problem& cell, const CampaignOptions& opt
 }
 
 void expect_same(const EpisodeRow& a, const EpisodeRow& b) {
-  SCOPED_TRACE("episode " + std::to_string(b.episode));
-  EXPECT_EQ(a.episode, b.episode);
-  EXPECT_EQ(a.status, b.status);
-  EXPECT_EQ(a.cost, b.cost);
-  EXPECT_EQ(a.nodes_checked, b.nodes_checked);
-  EXPECT_EQ(a.fcl_calls, b.fcl_calls);
-  EXPECT_EQ(a.tool_path_error_mm_mean, b.tool_path_error_mm_mean);
-  EXPECT_EQ(a.tool_path_error_mm_max, b.tool_path_error_mm_max);
-  EXPECT_EQ(a.failed_s, b.failed_s);
-  EXPECT_EQ(a.cause, b.cause);
-  EXPECT_EQ(a.by, b.by);
-  EXPECT_EQ(a.reason, b.reason);
-  EXPECT_EQ(a.offsets, b.offsets);
+  expect_same_rows(a, b, "episode " + std::to_string(b.episode));
 }
 
 TEST(WorkcellCampaign, EachRowIsThatOfItsWorkcellAtAnyThreadCount) {

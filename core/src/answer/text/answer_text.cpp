@@ -61,6 +61,7 @@ std::string diagnosis_text(const RunAnswer& run, const std::vector<HeldJoint>& h
     return none +
            ": paths reach the end, but none in the joints in which it begins "
            "(path.closed)\n";
+  if (d.cause.kind == Cause::Kind::kNotAsked) return none + "\n";
   if (d.cause.kind == Cause::Kind::kNone)
     return none + "; stopped before it was known what ends every one\n";
   const std::string why = cause_text(d.cause);

@@ -50,8 +50,8 @@ class GridCostToGo final : public CostToGo {
 
   void compute(int goal_layer) override;
   void compute_removals() override;
-  void save() override;
-  void restore() override;
+  [[nodiscard]] std::shared_ptr<const SavedValues> save() const override;
+  void restore(const SavedValues& saved) override;
 
   struct LayerJoints;
   struct JointRange;
@@ -196,13 +196,14 @@ class GridCostToGo final : public CostToGo {
   /// beside each other take more fresh memory.
   std::array<TileTable, 2> tiles_;
   bool apart_ = false;
-  struct {
+  struct Saved : SavedValues {
     int goal = 0;
     double limit = kUnreachable;
     bool apart = false, by_reach = false;
     Reach reach;
     std::array<TileTable::Held, 2> tiles;
-  } saved_;
+    std::shared_ptr<const ChordLowerBound> chord_bound;
+  };
   std::vector<LayerJoints> passing_;                     // [elbow side][layer % 2]: those at hand
   std::array<std::unique_ptr<Workspace>, 2> workspace_;  // [layer % 2]
   /// Joints of columns around nodes that were asked about one by one, since others around them will

@@ -140,18 +140,29 @@ bool GridCostToGo::renew_tiles(int side, const Workspace& workspace, const Angle
 
 GridCostToGo::~GridCostToGo() = default;
 
-void GridCostToGo::save() {
-  saved_ = {goal_, limit_, apart_, by_reach_, reach_, {tiles_[0].held(), tiles_[1].held()}};
+std::shared_ptr<const CostToGo::SavedValues> GridCostToGo::save() const {
+  auto saved = std::make_shared<Saved>();
+  saved->goal = goal_;
+  saved->limit = limit_;
+  saved->apart = apart_;
+  saved->by_reach = by_reach_;
+  saved->reach = reach_;
+  saved->tiles = {tiles_[0].held(), tiles_[1].held()};
+  saved->chord_bound = chord_bound_;
+  return saved;
 }
 
-void GridCostToGo::restore() {
-  goal_ = saved_.goal;
-  limit_ = saved_.limit;
-  apart_ = saved_.apart;
-  by_reach_ = saved_.by_reach;
-  reach_ = saved_.reach;
-  tiles_[0].restore(saved_.tiles[0]);
-  if (apart_) tiles_[1].restore(saved_.tiles[1]);
+void GridCostToGo::restore(const SavedValues& values) {
+  const auto& saved = static_cast<const Saved&>(values);
+  goal_ = saved.goal;
+  limit_ = saved.limit;
+  apart_ = saved.apart;
+  by_reach_ = saved.by_reach;
+  reach_ = saved.reach;
+  tiles_[0].restore(saved.tiles[0]);
+  if (apart_ && tiles_[1].tiles() == 0) tiles_[1] = TileTable(tiles_[0].tiles());
+  if (apart_) tiles_[1].restore(saved.tiles[1]);
+  chord_bound_ = saved.chord_bound;
 }
 
 void GridCostToGo::compute(int goal_layer) {

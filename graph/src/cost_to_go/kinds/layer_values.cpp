@@ -28,6 +28,20 @@ LayerValues::LayerValues(const Lattice& lattice, const Budget& budget, Pruning p
     value_.emplace_back(static_cast<std::size_t>(lattice.slots(layer)), kUnreachable);
 }
 
+std::shared_ptr<const CostToGo::SavedValues> LayerValues::save() const {
+  return std::make_shared<const Saved>(goal_, limit_, value_, before_);
+}
+
+void LayerValues::restore(const SavedValues& values) {
+  const auto& saved = static_cast<const Saved&>(values);
+  goal_ = saved.goal;
+  limit_ = saved.limit;
+  value_ = saved.value;
+  before_ = saved.before;
+  slack_ = first_slack(lattice());
+  forward_.clear();
+}
+
 void LayerValues::leave_out_removed(int layer, Values& values) const {
   for (int slot = 0; slot < static_cast<int>(values.size()); ++slot)
     if (removed(layer, slot)) values[static_cast<std::size_t>(slot)] = kUnreachable;

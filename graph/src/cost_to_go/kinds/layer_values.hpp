@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <cstddef>
+#include <memory>
 #include <span>
-#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "cost_to_go/limit_slack.hpp"
@@ -106,12 +107,8 @@ class LayerValues : public CostToGo {
   /// Computes the values of the nodes `stale` of a layer again. Appends those whose values change
   /// to `changed`.
   void renew_nodes(int layer, std::vector<int>& stale, std::vector<Change>& changed);
-  void save() final { saved_ = {goal_, limit_, value_, before_}; }
-  void restore() final {
-    std::tie(goal_, limit_, value_, before_) = saved_;
-    slack_ = first_slack(lattice());
-    forward_.clear();
-  }
+  [[nodiscard]] std::shared_ptr<const SavedValues> save() const final;
+  void restore(const SavedValues& saved) final;
   void leave_out_removed(int layer, Values& values) const;
 
   bool bounded_;
@@ -133,7 +130,14 @@ class LayerValues : public CostToGo {
   std::vector<int> within_;  // slots, scratch
   Values fresh_;             // what renew_nodes() computes
 
-  std::tuple<int, double, std::vector<Values>, Before> saved_;
+  struct Saved : SavedValues {
+    Saved(int goal_layer, double most, std::vector<Values> all, Before forward)
+        : goal(goal_layer), limit(most), value(std::move(all)), before(std::move(forward)) {}
+    int goal;
+    double limit;
+    std::vector<Values> value;
+    Before before;
+  };
 };
 
 }  // namespace swivel

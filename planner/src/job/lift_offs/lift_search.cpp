@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "job/transitions/job_transitions.hpp"
-#include "plan/told_turns.hpp"
+#include "plan/layout/told_turns.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/input_error.hpp"

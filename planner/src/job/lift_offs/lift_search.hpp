@@ -64,7 +64,7 @@ class LiftSearch {
   World world_;
   Executor executor_;
   ToolPath path_;
-  std::unique_ptr<Lattice> lattice_;
+  std::shared_ptr<Lattice> lattice_;
   std::optional<CutProgram> program_;
   std::vector<CutPlace> places_;
   std::vector<std::uint8_t> begin_known_, end_known_;  // by layer: whether lines were asked about

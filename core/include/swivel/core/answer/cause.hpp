@@ -11,6 +11,7 @@ namespace swivel {
 struct Cause {
   enum class Kind {
     kNone,            ///< not found
+    kNotAsked,        ///< not sought, because it was not asked for (Evidence::cause)
     kReach,           ///< the pose is too far for the arm (Side::kUpper) or too near (kLower)
     kSingular,        ///< axes or joint centres are in line
     kLimit,           ///< a joint is beyond its limit less the margin
@@ -69,7 +70,7 @@ struct Cause {
 /// Returns "lower", "upper", or "" for kNone.
 [[nodiscard]] const char* to_string(Cause::Side side);
 /// Returns the cause in a phrase: "no IK", "singular", "joint <name>", "joint limits", "<body> -
-/// <body>", "joint step", ...; "not known: time was up" for kNone.
+/// <body>", "joint step", ...; "not known: time was up" for kNone, "not asked for" for kNotAsked.
 [[nodiscard]] std::string words(const Cause& cause);
 /// Returns by how much the cause misses, for people: "out of reach by 3 mm", "0.4 deg beyond
 /// -117.00 deg"; "" where it was not measured. `most` is the most that it misses by at one of

@@ -109,7 +109,7 @@ struct Diagnosis {
   std::optional<double> reached_s;
   /// The one cause that ends every path there: without it, paths would go on to `without_it`. Where
   /// no single cause explains it, it is the first of those that stand in the way, and `without_it`
-  /// is none. Kind::kNone where it was not found in time.
+  /// is none. Kind::kNone where it was not found in time, kNotAsked without Evidence::cause.
   Cause cause;
   /// m along the path, of the layer after the furthest one, where all paths have ended.
   std::optional<double> at_s;
@@ -154,8 +154,8 @@ struct Diagnosis {
 /// Returns "this_resolution", "exact_tool" or "every_resolution".
 [[nodiscard]] const char* to_string(Diagnosis::Holds holds);
 
-/// What a plan must find besides verdict, trajectory, counters, and where and why every path ends.
-/// Each item costs time of its own.
+/// What a plan must find besides verdict, trajectory, counters, and where every path ends. Each
+/// item costs time of its own.
 struct Evidence {
   bool tool_path_error = false;  ///< PlanResult::tool_path_error_mm
   /// Exact clearances of all rows (which take more time than many a plan), manipulability, arm
@@ -163,6 +163,9 @@ struct Evidence {
   bool postures = false;
   bool layers = false;   ///< Diagnosis::empty_layers and removed
   bool contact = false;  ///< Measures::deepest_contact
+  /// Why every path ends there (Diagnosis::cause), which may take several times as long as finding
+  /// that there is none. Not asked for, it is Cause::Kind::kNotAsked.
+  bool cause = true;
   /// Returns the evidence that asks for everything.
   [[nodiscard]] static Evidence all() { return {true, true, true, true}; }
 };

@@ -38,8 +38,8 @@ struct Shard {
 [[nodiscard]] std::vector<double> episode_offsets(const std::vector<Variation>& vary,
                                                   std::uint64_t seed, std::uint64_t episode);
 
-/// One line of RESULTS.csv, docs/formats.md. All but plan_ms is independent of threads and shards.
-/// Counts depend on what was planned before, the others do not.
+/// One line of RESULTS.csv, docs/formats.md. All but plan_ms is that of a plan of the episode
+/// alone.
 struct EpisodeRow {
   std::uint64_t episode = 0;
   PlanStatus status = PlanStatus::kInfeasible;

@@ -42,6 +42,19 @@ class CostToGo {
   void share(const ParallelFor& work) { work_ = work; }
   /// Declares that restart() will not be called, so that nothing need be kept for it.
   void set_single_use() { restarts_ = false; }
+  /// Values of a lattice without removals. They are never written, so that threads may share them.
+  struct SavedValues {
+    SavedValues() = default;
+    SavedValues(const SavedValues&) = delete;
+    SavedValues& operator=(const SavedValues&) = delete;
+    virtual ~SavedValues() = default;
+  };
+  /// Returns the values with which restart() begins again, null where they are not known. sweep()
+  /// or restart() must follow.
+  [[nodiscard]] std::shared_ptr<const SavedValues> values_without_removals();
+  /// Takes what values_without_removals() of another cost-to-go of this lattice returned, with
+  /// which restart() begins from now on.
+  void begin_with(std::shared_ptr<const SavedValues> values);
 
   /// Takes the lower bounds of a swept cost-to-go whose lattice this one was made from by telling
   /// turns apart (Lattice::with_windings()).
@@ -106,9 +119,9 @@ class CostToGo {
   CostToGo(const Lattice& lattice, const Budget& budget) : budget_(budget), verdicts_(lattice) {}
   virtual void compute(int goal_layer) = 0;
   virtual void compute_removals() = 0;
-  /// Keeps the present values for restore(), which brings them back as often as asked.
-  virtual void save() = 0;
-  virtual void restore() = 0;
+  /// Returns a copy of the present values, which restore() brings back.
+  [[nodiscard]] virtual std::shared_ptr<const SavedValues> save() const = 0;
+  virtual void restore(const SavedValues& saved) = 0;
   /// Saves the values without removals, if they are present, before they or what goes with them are
   /// overwritten.
   void save_unremoved();
@@ -123,6 +136,7 @@ class CostToGo {
   /// Where the values without removals and with the last layer as goal are.
   enum class Unremoved { kUnknown, kPresent, kSaved };
   Unremoved unremoved_ = Unremoved::kUnknown;
+  std::shared_ptr<const SavedValues> saved_;
   bool restarts_ = true;
 };
 

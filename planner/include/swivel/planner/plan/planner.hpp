@@ -10,6 +10,7 @@
 
 namespace swivel {
 
+class LatticeCache;
 class PreparedRobot;
 struct PlanView;
 
@@ -73,6 +74,10 @@ class Planner {
   [[nodiscard]] PlanView view() const;
 
  private:
+  friend class StudyPlanner;
+  /// Takes lattices of tasks from a cache from now on, and keeps nothing of what plans find out of
+  /// obstacles. Call it before the first plan.
+  void share_lattices(std::shared_ptr<LatticeCache> cache);
   friend PlanResult plan(const PathProblem& problem, const PlanOptions& options);
   friend PlanResult plan(const PreparedRobot& robot, const PathProblem& problem,
                          const PlanOptions& options);

@@ -14,7 +14,9 @@ struct CampaignOptions {
   std::uint64_t seed = 1;
   Shard shard;
   std::uint64_t skip = 0;  ///< leading episodes of the shard that are answered already
-  /// threads: episodes planned at once, each by one thread. Evidence and progress are ignored.
+  /// threads: episodes planned at once, each by one thread. timeout_s: of all episodes together.
+  /// The tool-path error is found always, the cause where it is asked for, no other evidence;
+  /// progress is ignored.
   PlanOptions plan;
   /// Called with every answer before its row is delivered, from the planning threads, several at a
   /// time and in any order.

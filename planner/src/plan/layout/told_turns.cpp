@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plan/told_turns.hpp"
+#include "plan/layout/told_turns.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "plan/keeps_branch.hpp"
+#include "plan/layout/keeps_branch.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/messages/formatted.hpp"
 

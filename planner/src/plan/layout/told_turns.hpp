@@ -49,11 +49,11 @@ inline void require_same_turns(const Lattice& lattice, const std::vector<Traject
 [[nodiscard]] bool may_tell_turns_apart(const Hooks& hooks);
 
 /// Returns a lattice like `lattice` that treats no bounded joint as a circle.
-[[nodiscard]] inline std::unique_ptr<Lattice> with_all_windings(std::unique_ptr<Lattice> lattice) {
+[[nodiscard]] inline std::shared_ptr<Lattice> with_all_windings(std::shared_ptr<Lattice> lattice) {
   const Lattice::Joints circles = bounded_circles(*lattice);
   if (circles == Lattice::Joints{}) return lattice;
-  auto wound = lattice->with_windings(circles);
-  return wound ? std::move(wound) : std::move(lattice);
+  std::shared_ptr<Lattice> wound = lattice->with_windings(circles);
+  return wound ? wound : lattice;
 }
 
 /// Adds the nodes that were removed from a lattice, by layer, as Lattice::slot_on_circles() numbers
