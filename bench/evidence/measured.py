@@ -34,7 +34,7 @@ class Benchmarks:
         runs, self.not_run = {}, {}
         for entry in content["benchmarks"] if content else []:
             if entry["run_type"] == "iteration":
-                name = entry["run_name"].removesuffix("/real_time")
+                name = entry["run_name"].removesuffix("/real_time").removesuffix("/process_time")
                 if entry.get("error_occurred"):
                     self.not_run[name] = entry["error_message"]
                 else:

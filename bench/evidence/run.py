@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 
+import many_plans
 import peers as public_problems
 import planner_table
 import tables
@@ -104,6 +105,16 @@ def peers(data, quick):
     public_problems.measure(PROGRAM, data)
 
 
+def batch(data, quick):
+    """Many problems of one robot."""
+    repetitions, min_time = (3, 0.05) if quick else (5, 0.5)
+    benchmark(
+        "batch_benchmark", data / "batch.json", repetitions, min_time,
+        f"--benchmark_filter={many_plans.FILTER}"
+    )
+    print(many_plans.batch(data), end="\n\n", flush=True)
+
+
 def trace(data, quick):
     """A plan whose path is found wanting several times."""
     run(
@@ -127,10 +138,10 @@ def trace(data, quick):
 
 STEPS = {
     step.__name__: step
-    for step in (experiments, table1, plans, first_plans, pieces, peers, trace)
+    for step in (experiments, table1, plans, first_plans, pieces, peers, batch, trace)
 }
 # Steps whose data no figure shows: they need no matplotlib.
-NOT_DRAWN = {"peers"}
+NOT_DRAWN = {"peers", "batch"}
 
 
 def main():
