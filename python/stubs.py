@@ -70,7 +70,8 @@ MAYBE = set(
     Run.diagnosis
     Placement.cost Placement.clearance Placement.clearance_margin Placement.joint_margin
     Placement.slide_margin Placement.tool_speed Placement.failed_s Episode.cost Episode.failed_s
-    Episode.tool_path_error_mm_mean Episode.tool_path_error_mm_max""".split()
+    Episode.tool_path_error_mm_mean Episode.tool_path_error_mm_max Planned.cost
+    Planned.failed_s""".split()
 )
 SPECIAL = {f"__{name}__" for name in "init len iter getitem contains bool array getattr".split()}
 ENUM = [

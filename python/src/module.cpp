@@ -31,6 +31,7 @@ PYBIND11_MODULE(_swivel, m) {
   swivel::python::bind_drawings(m);
   swivel::python::bind_certificates(m);
   swivel::python::bind_runs(m);
+  swivel::python::bind_plan_many(m);
   py::module_::import("atexit").attr("register")(
       py::cpp_function(&swivel::python::UnderWay::end_all));
 }

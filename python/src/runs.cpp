@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <functional>
-#include <limits>
 #include <map>
 #include <optional>
 #include <tuple>
@@ -17,9 +16,6 @@
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/study/grid_refinement.hpp"
-#include "swivel/io/io.hpp"
-#include "swivel/io/problems/problem.hpp"
-#include "swivel/io/tables/placement.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/study/campaign.hpp"
 #include "swivel/planner/study/place.hpp"
@@ -27,129 +23,6 @@
 namespace swivel::python {
 
 namespace {
-
-std::uint64_t number_of(const PlacementRow& row) {
-  return row.cell;
-}
-std::uint64_t number_of(const EpisodeRow& row) {
-  return row.episode;
-}
-
-template <class Row>
-Table<Row> to_table(std::vector<Row> rows, std::vector<std::string> coordinates = {}) {
-  return {std::make_shared<const std::vector<Row>>(std::move(rows)), std::move(coordinates)};
-}
-
-std::string to_csv(const Placements& table) {
-  return io::to_csv(*table.rows);
-}
-std::string to_csv(const Episodes& table) {
-  return io::to_csv(*table.rows, table.coordinates);
-}
-
-/// Returns an array with one number for each row, NaN for a row that has none.
-template <class Row>
-py::array_t<double> numbers(const Table<Row>& table, std::optional<double> Row::*member) {
-  py::array_t<double> array(static_cast<py::ssize_t>(table.rows->size()));
-  double* out = array.mutable_data();
-  for (const Row& row : *table.rows)
-    *out++ = (row.*member).value_or(std::numeric_limits<double>::quiet_NaN());
-  return array;
-}
-template <class Row, class Number>
-py::array_t<Number> plain(const Table<Row>& table, Number Row::*member) {
-  return column(table.rows, table.rows->empty() ? nullptr : &(table.rows->front().*member));
-}
-template <class Row>
-std::vector<std::string> texts(const Table<Row>& table, std::string Row::*member) {
-  std::vector<std::string> all;
-  for (const Row& row : *table.rows) all.push_back(row.*member);
-  return all;
-}
-
-template <class Row>
-Table<Row> joined(const std::vector<Table<Row>>& parts) {
-  std::vector<Row> rows;
-  for (const Table<Row>& part : parts)
-    rows.insert(rows.end(), part.rows->begin(), part.rows->end());
-  std::sort(rows.begin(), rows.end(),
-            [](const Row& a, const Row& b) { return number_of(a) < number_of(b); });
-  return to_table(std::move(rows),
-                  parts.empty() ? std::vector<std::string>() : parts[0].coordinates);
-}
-
-/// Returns words such as "12, of which 7 have a path; cost 1.9 to 2.4".
-template <class Row>
-std::string table_words(const Table<Row>& table) {
-  std::size_t solved = 0;
-  double least = std::numeric_limits<double>::infinity(), most = 0;
-  for (const Row& row : *table.rows) {
-    if (row.status != PlanStatus::kSolved || !row.cost) continue;
-    ++solved;
-    least = std::min(least, *row.cost);
-    most = std::max(most, *row.cost);
-  }
-  std::string text = formatted("%zu, of which %zu have a path", table.rows->size(), solved);
-  if (solved > 0) text += formatted("; cost %.6g to %.6g", least, most);
-  return text;
-}
-
-/// Binds what every table has.
-template <class Row>
-py::class_<Table<Row>> bind_table(py::module_& m, const char* type, const char* doc) {
-  using Rows = Table<Row>;
-  py::class_<Rows> table(m, type, doc);
-  table.def(pickling<Rows>())
-      .def("__len__", [](const Rows& t) { return t.rows->size(); })
-      .def(
-          "__getitem__",
-          [](const Rows& t, py::ssize_t k) {
-            const auto size = static_cast<py::ssize_t>(t.rows->size());
-            if (k < -size || k >= size)
-              throw py::index_error("row " + std::to_string(k) + " of " + std::to_string(size));
-            return (*t.rows)[static_cast<std::size_t>(k < 0 ? k + size : k)];
-          },
-          py::arg("k"), "The k-th row.")
-      .def_property_readonly(
-          "status",
-          [](const Rows& t) {
-            std::vector<PlanStatus> all;
-            for (const Row& row : *t.rows) all.push_back(row.status);
-            return all;
-          },
-          "Status of each row.")
-      .def_property_readonly(
-          "solved",
-          [](const Rows& t) {
-            py::array_t<bool> array(static_cast<py::ssize_t>(t.rows->size()));
-            bool* out = array.mutable_data();
-            for (const Row& row : *t.rows) *out++ = row.status == PlanStatus::kSolved;
-            return array;
-          },
-          "(n,) bool.")
-      .def_property_readonly(
-          "cost", [](const Rows& t) { return numbers(t, &Row::cost); },
-          "(n,); NaN where there is no path.")
-      .def_property_readonly(
-          "failed_s", [](const Rows& t) { return numbers(t, &Row::failed_s); },
-          "(n,), m, where every path ends; NaN where there is one, and where not even the first "
-          "layer has a node.")
-      .def_property_readonly(
-          "reason", [](const Rows& t) { return texts(t, &Row::reason); },
-          "What ends them, in words; '' where there is a path.")
-      .def(
-          "save",
-          [](const Rows& t, const std::filesystem::path& file) { io::write_file(file, to_csv(t)); },
-          py::arg("file"), "As CSV, docs/formats.md: what the program writes.")
-      .def(
-          "to_csv", [](const Rows& t) { return to_csv(t); },
-          "All rows as CSV, docs/formats.md: what the program writes.")
-      .def_static("_joined", &joined<Row>)  // used by place() and campaign() of the package
-      .def("__repr__", [name = std::string(type)](const Rows& t) {
-        return "<" + name + ": " + table_words(t) + ">";
-      });
-  return table;
-}
 
 std::string placement_words(const PlacementRow& row) {
   std::string text = formatted("%llu", static_cast<unsigned long long>(row.cell));
@@ -224,7 +97,7 @@ void bind_tables(py::module_& m) {
                     "Whether the answer was proved; None unless solved.")
       .def("__repr__",
            [](const PlacementRow& r) { return "<Placement " + placement_words(r) + ">"; });
-  bind_table<PlacementRow>(
+  bind_table<Placements>(
       m, "Placements",
       "Placements in the order of their numbers: Placement by Placement, or as arrays.")
       .def_property_readonly(
@@ -306,7 +179,7 @@ void bind_tables(py::module_& m) {
                (r.cost ? formatted("cost %.6g", *r.cost) : "no path, " + r.reason) +
                formatted(", %.1f ms>", r.plan_ms);
       });
-  bind_table<EpisodeRow>(
+  bind_table<Episodes>(
       m, "Episodes",
       "Episodes of a campaign in the order of their numbers: Episode by Episode, or as arrays.")
       .def_property_readonly(
@@ -420,15 +293,6 @@ class Cells {
   std::uint64_t seed_;
 };
 
-/// Returns a robot for all plans of a problem of one arm; null for two arms, each plan of which
-/// prepares both.
-std::shared_ptr<const PreparedRobot> prepare(const swivel::Problem& planned,
-                                             const std::stop_token& stop) {
-  if (planned.arms.size() == 2) return nullptr;
-  return std::make_shared<const PreparedRobot>(problem_of_run(planned, {0, false}),
-                                               Budget({}, nullptr, stop));
-}
-
 /// Plans placements of one thing; of a problem with a planner that remembers earlier plans.
 class Placer {
  public:
@@ -466,7 +330,7 @@ class Placer {
       if (!planner_) {
         PlanOptions options = options_;
         options.stop = stop_.get_token();
-        const auto robot = prepare(planned_, stop);
+        const auto robot = prepare_robot(planned_, Budget({}, nullptr, stop));
         if (robot)
           planner_.emplace(robot, planned_, thing_, options);
         else
@@ -505,7 +369,7 @@ class Campaigner {
   Episodes plan(const Shard& shard, const py::object& each) {
     const std::vector<std::string> coordinates = varied_coordinates(planned_.vary);
     return to_table(interruptible([&](const std::stop_token& stop) {
-                      if (!robot_) robot_ = prepare(planned_, stop);
+                      if (!robot_) robot_ = prepare_robot(planned_, Budget({}, nullptr, stop));
                       CampaignOptions options = options_;
                       options.shard = shard;
                       options.plan.stop = stop;
@@ -568,6 +432,12 @@ void bind_parts(py::module_& m) {
 }
 
 }  // namespace
+
+std::shared_ptr<const PreparedRobot> prepare_robot(const swivel::Problem& planned,
+                                                   const Budget& budget) {
+  if (planned.arms.size() == 2) return nullptr;
+  return std::make_shared<const PreparedRobot>(problem_of_run(planned, {0, false}), budget);
+}
 
 void bind_runs(py::module_& m) {
   bind_tables(m);

@@ -15,7 +15,7 @@ columns.
         print(plan.diagnosis.cause)
 
 A problem has one path, many strokes, or two arms. load() reads every kind, and plan(), check(),
-time(), place(), campaign(), report() and certificate() take every kind.
+time(), place(), campaign(), plan_many(), report() and certificate() take every kind.
 """
 from __future__ import annotations as _annotations
 
@@ -36,7 +36,7 @@ from .drawings import (  # noqa: F401
     report,
 )
 from .rows import TrajectoryRow  # noqa: F401
-from .runs import _loaded, campaign, place  # noqa: F401
+from .runs import _loaded, campaign, place, plan_many  # noqa: F401
 
 __all__ = [name for name in vars(_swivel) if not name.startswith("_")]
 
@@ -60,7 +60,7 @@ for _name in __all__:
         _thing.__reduce__ = lambda thing: (_restore, (type(thing), thing.__getstate__()))
 for _thing in (
     TrajectoryRow, campaign, certificate, check_certificate, load_certificate, map_svg, place,
-    report
+    plan_many, report
 ):
     _thing.__module__ = __name__
 _rows.extend()
@@ -121,6 +121,7 @@ __all__ += [
     "measure",
     "place",
     "plan",
+    "plan_many",
     "refine",
     "report",
     "time",

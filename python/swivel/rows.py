@@ -136,5 +136,5 @@ def extend():
             setattr(kind, name, method)
         # Without this, pandas would take the array and lose the names of the columns.
         collections.abc.Sequence.register(kind)
-    for kind in (_swivel.Answer, _swivel.Placements, _swivel.Episodes):
+    for kind in (_swivel.Answer, _swivel.Placements, _swivel.Episodes, _swivel.Plans):
         kind.to_dataframe = _table

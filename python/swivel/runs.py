@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes many plans of one problem, job or workcell (placements, campaigns).
+"""Makes many plans of one problem, job or workcell (placements, campaigns, given problems).
 
 They are made here or on workers of a Dask cluster.
 """
 from __future__ import annotations
 
+import collections.abc
 import contextlib
 import functools
+import operator
 import os
 import threading
 import time
@@ -122,7 +124,7 @@ def place(
                 break
             if refinement is not None:
                 refinement.learn(_swivel.Placements._joined(parts[known:]))
-    return _swivel.Placements._joined(parts)
+        return _swivel.Placements._joined(parts)
 
 
 def campaign(
@@ -173,7 +175,114 @@ def campaign(
     ) as workers:
         count = 1 if here else -(-episodes // workers.batch(episodes))
         workers.plan(((index, count) for index in range(count)), arrived)
-    return _swivel.Episodes._joined(parts)
+        return _swivel.Episodes._joined(parts)
+
+
+def plan_many(
+    problem: Problem | _File,
+    *,
+    paths: ArrayLike | Sequence[ArrayLike] | None = None,
+    poses: Mapping[str, ArrayLike] | None = None,
+    bases: ArrayLike | None = None,
+    starts: ArrayLike | None = None,
+    ends: ArrayLike | None = None,
+    planner: _PlannerKind = "parallel",
+    threads: int = 0,
+    timeout: float | None = None,
+    timeout_each: float | None = None,
+    prove: bool = True,
+    explain: bool = True,
+    progress: Callable[[Plans, int, int], Any] | None = None,
+    client: Any = None,
+    shard: str | tuple[int, int] | None = None,
+) -> Plans:
+    """Plans many problems that differ from one: in paths, places of objects, base, start and end.
+
+    problem: a Problem, or the name of its file. The next five have one entry for each of the n
+    problems; one or more of them are given, and what is not given is that of the problem.
+    paths: of one path: waypoints in the path's frame, (n, m, 7) rows x y z qw qx qy qz, m,
+    (n, m, 4, 4), or a sequence of (m, 7) or (m, 4, 4), whose m may differ; not of problems with
+    windows of the roll. poses: name of a scene object -> its poses in the base frame, (n, 7) or
+    (n, 4, 4). bases: of one arm: poses of the robot's base in the base frame that the problem has,
+    (n, 7) or (n, 4, 4); objects stay where they are, at `poses` if these are given, and so does a
+    path in the base frame. starts, ends: of one path: joints in which it begins and ends, (n, 7),
+    rad.
+    planner: a PlannerKind or its name. threads: problems planned at once, 0 for all cores.
+    timeout: s, after which the rows known so far are returned. timeout_each: s for each problem;
+    one that takes longer has the status 'timeout'. prove: prove each answer before its row is told.
+    explain: find out what ends the paths of problems without one, which may take several times as
+    long as finding that there is none; else their `cause` is 'not_asked', but for 'not_closed',
+    'transition', 'conflict' and 'given_motion', which are known anyway.
+    progress(plans, done, of): called with new rows, in their order, the number of rows so far, and
+    the number of all rows. client: a dask.distributed.Client, as for place(); its rows come in any
+    order. shard: (I, N) or "I/N": only the problems I, I + N, I + 2 N, ...; their numbers stay.
+
+    Returns Plans in the order of their numbers. All but plan_ms is the same at any number of
+    threads, workers and shards: what plan() finds for each problem alone. Problems with one path
+    share what is computed of it, and should follow each other. Where time is up, the rows are the
+    first ones, without a gap; over a client `number` says which they are. What is wrong with one
+    problem alone, such as a start off its path, is a row of the status 'error' with the message as
+    `reason`; of two arms, a given motion that an object bars is a row without a path. Raises
+    InvalidArgument, InputError and TypeError before anything is planned; Ctrl-C raises
+    KeyboardInterrupt, whose attribute `rows` is the Plans known so far.
+    """
+    begin = time.monotonic()
+    problem = _loaded(problem)
+    if not (poses is None or isinstance(poses, collections.abc.Mapping)):
+        raise TypeError(
+            f"poses: {type(poses).__name__}: allowed is a mapping of names of scene objects"
+        )
+    if not (progress is None or callable(progress)):
+        raise TypeError("progress: not callable: allowed is a function, or None")
+    varied = _swivel._Varied(
+        problem, paths, {} if poses is None else dict(poses), bases, starts, ends
+    )
+    if shard is not None:
+        index, count = _share(shard)
+        varied = varied.part(range(index, len(varied), count))
+    here = client is None
+    make = functools.partial(_swivel._ManyPlanner, problem, planner)
+    # Says what is wrong before anything is sent, and how many joints a row has.
+    parts = [make(threads, timeout, timeout_each, prove, explain).nothing()]
+    deadline = None if timeout is None else begin + timeout
+    if here:
+        make = functools.partial(make, threads, timeout, timeout_each, prove, explain)
+    else:
+        make = functools.partial(make, 1, None, timeout_each, prove, explain)
+    total, done = len(varied), 0
+
+    def arrived(plans):
+        nonlocal done
+        parts.append(plans)
+        done += len(plans)
+        if progress is not None:
+            progress(plans, done, total)
+
+    with _known_rows(_swivel.Plans, parts), (
+        _Here(make, _plan_varied) if here else _Workers(client, make, _plan_varied, deadline)
+    ) as workers:
+        size = total if here else workers.batch(total)
+        batches = (
+            varied if size == total else varied.part(range(k, min(k + size, total)))
+            for k in range(0, total, max(1, size))
+        )
+        workers.plan(batches, arrived)
+        return _swivel.Plans._joined(parts)
+
+
+def _share(shard):
+    """Returns I and N of a shard that is given as (I, N) or "I/N"."""
+    try:
+        index, count = (
+            map(int, shard.split("/")) if isinstance(shard, str) else map(operator.index, shard)
+        )
+    except (TypeError, ValueError):
+        index = count = 0
+    if not 0 <= index < count:
+        raise _swivel.InvalidArgument(
+            f"shard: {shard!r}: allowed are (I, N) and 'I/N', with I from 0 to N - 1"
+        )
+    return index, count
 
 
 @contextlib.contextmanager
@@ -204,6 +313,11 @@ def _plan_cells(planner, batch, arrived):
 def _plan_episodes(planner, batch, arrived):
     planner.plan(*batch, arrived)
     return True
+
+
+def _plan_varied(planner, batch, arrived):
+    """Plans a batch of problems; returns whether all of it was planned."""
+    return planner.plan(batch, arrived)
 
 
 class _Here:

@@ -1648,9 +1648,10 @@ class Stubs(unittest.TestCase):
 
         anything = MAYBE | {
             "Trajectory.to_dataframe", "Motion.to_dataframe", "Answer.to_dataframe",
-            "Placements.to_dataframe", "Episodes.to_dataframe", "Trajectory.__array__",
-            "Motion.__array__", "Answer.report", "Answer.map_svg", "report", "map_svg",
-            "campaign", "place", "compute_cartesian_path", "load_trajectory"
+            "Placements.to_dataframe", "Episodes.to_dataframe", "Plans.to_dataframe",
+            "Trajectory.__array__", "Motion.__array__", "Answer.report", "Answer.map_svg",
+            "report", "map_svg", "campaign", "place", "plan_many", "compute_cartesian_path",
+            "load_trajectory"
         }
         count = 0
         for name, node in self.functions():

@@ -167,8 +167,8 @@ void bind_figures(py::module_& m) {
 }
 
 void bind_verdicts(py::module_& m) {
-  bind_enum<PlanStatus>(m, "Status", "What became of a plan.",
-                        names_from(PlanStatus::kSolved, PlanStatus::kCancelled));
+  bind_enum<PlanStatus>(m, "Status", "What became of a plan; ERROR is one of rows of many plans.",
+                        names_from(PlanStatus::kSolved, PlanStatus::kError));
   bind_enum<Cause::Kind>(m, "CauseKind", "What removes nodes or edges of a lattice.",
                          names_from(Cause::Kind::kNone, Cause::Kind::kCheck));
   bind_enum<Advice::Change>(m, "Change", "What may be changed of a problem.",

@@ -70,6 +70,11 @@ struct Mesh {
 /// Throws ValueError for anything else.
 [[nodiscard]] Waypoint to_waypoint(py::handle source, bool position_alone);
 [[nodiscard]] Pose to_pose(py::handle source);
+/// Returns the pose that the 16 numbers of a (4, 4) array state, row by row. Throws ValueError for
+/// no rigid transform.
+[[nodiscard]] Pose to_rigid(const double* numbers);
+/// Throws ValueError for a quaternion whose length is off 1 by more than 1e-3.
+void require_unit(const Quaterniond& quaternion);
 [[nodiscard]] std::vector<Waypoint> to_waypoints(py::handle source);
 [[nodiscard]] py::array_t<double> from_waypoints(const std::vector<Waypoint>& waypoints);
 /// Lets a tool that `robot` may turn freely about its z axis pass half turns between waypoints, as
@@ -229,6 +234,7 @@ void bind_problem(py::module_& m);
 void bind_planner(py::module_& m);
 void bind_functions(py::module_& m);
 void bind_runs(py::module_& m);
+void bind_plan_many(py::module_& m);
 void bind_states(py::module_& m);
 void bind_drawings(py::module_& m);
 void bind_certificates(py::module_& m);

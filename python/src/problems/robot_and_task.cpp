@@ -735,7 +735,12 @@ Waypoint to_waypoint(py::handle source, bool position_alone) {
   if (values.ndim() == 1 && values.shape(0) == 3 && position_alone) return {{v[0], v[1], v[2]}};
   if (values.ndim() != 2 || values.shape(0) != 4 || values.shape(1) != 4)
     throw py::value_error("pose of shape " + shape_text(values) + ": allowed are " + allowed);
-  const Eigen::Matrix4d X = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(v);
+  const Pose pose = to_rigid(v);
+  return {pose.translation(), Quaterniond(pose.linear())};
+}
+
+Pose to_rigid(const double* numbers) {
+  const Eigen::Matrix4d X = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(numbers);
   const Matrix3d R = X.topLeftCorner<3, 3>();
   if (!X.allFinite() ||
       !((R.transpose() * R - Matrix3d::Identity()).cwiseAbs().maxCoeff() <= 1e-6) ||
@@ -743,17 +748,23 @@ Waypoint to_waypoint(py::handle source, bool position_alone) {
     throw py::value_error(
         "pose is no rigid transform: allowed are a rotation within 1e-6, a finite translation, 0 0 "
         "0 1 below");
-  return {X.topRightCorner<3, 1>(), Quaterniond(R)};
+  Pose pose = Pose::Identity();
+  pose.translation() = X.topRightCorner<3, 1>();
+  pose.linear() = R;
+  return pose;
+}
+
+void require_unit(const Quaterniond& quaternion) {
+  const double norm = quaternion.norm();
+  if (std::abs(norm - 1) <= 1e-3) return;
+  const std::string text =
+      formatted("pose: quaternion of length %g: allowed is 1 within 1e-3", norm);
+  throw py::value_error(text);
 }
 
 Pose to_pose(py::handle source) {
   const Waypoint waypoint = to_waypoint(source, true);
-  const double norm = waypoint.orientation.norm();
-  if (!(std::abs(norm - 1) <= 1e-3)) {
-    const std::string text =
-        formatted("pose: quaternion of length %g: allowed is 1 within 1e-3", norm);
-    throw py::value_error(text);
-  }
+  require_unit(waypoint.orientation);
   Pose pose = Pose::Identity();
   pose.translation() = waypoint.position;
   const Array values = Array::ensure(source);
