@@ -31,6 +31,7 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/core/kinematics/chain/arm.hpp
   swivel/core/lattice/body_pose_classes.hpp
   swivel/core/lattice/kinds/make_lattice.hpp
+  swivel/core/lattice/knots.hpp
   swivel/core/lattice/lattice.hpp
   swivel/core/lattice/lattice_description.hpp
   swivel/core/lattice/problem_path.hpp

@@ -3,6 +3,7 @@
 
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 #include "swivel/core/messages/input_error.hpp"
 
@@ -11,7 +12,7 @@ namespace swivel {
 ExplicitLattice::ExplicitLattice(const Chain& chain, const ToolPath& path,
                                  const PathProblem& problem, std::vector<std::vector<Point>> layers,
                                  const std::array<bool, kDof>& circles)
-    : ExplicitLattice(chain, path, problem, shared(std::move(layers)), circles) {}
+    : ExplicitLattice(chain, Knots(path), problem, shared(std::move(layers)), circles) {}
 
 ExplicitLattice::Layers ExplicitLattice::shared(std::vector<std::vector<Point>> layers) {
   Layers all;
@@ -21,18 +22,17 @@ ExplicitLattice::Layers ExplicitLattice::shared(std::vector<std::vector<Point>> 
   return all;
 }
 
-ExplicitLattice::ExplicitLattice(const Chain& chain, const ToolPath& path,
-                                 const PathProblem& problem, Layers layers,
-                                 const std::array<bool, kDof>& circles)
-    : Lattice(chain, path, problem), points_(std::move(layers)) {
-  if (static_cast<int>(points_.size()) != path.size())
+ExplicitLattice::ExplicitLattice(const Chain& chain, Knots knots, const PathProblem& problem,
+                                 Layers layers, const std::array<bool, kDof>& circles)
+    : Lattice(chain, std::move(knots), problem), points_(std::move(layers)) {
+  if (static_cast<int>(points_.size()) != this->layers())
     throw std::invalid_argument("explicit lattice: " + std::to_string(points_.size()) +
                                 " layers of nodes: allowed are as many as the path has, " +
-                                std::to_string(path.size()));
+                                std::to_string(this->layers()));
   if (limits_.step_error)
     throw InputError(problem.source,
                      "limits.step_error: needs the closed form of an S-R-S arm: allowed is null");
-  for (std::size_t j = 0; j < kDof; ++j) continuous_[j] = continuous_[j] || circles[j];
+  treat_as_circles(circles);
   for (const auto& layer : points_) nodes_ += static_cast<std::int64_t>(layer->size());
 }
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lattice/knots.hpp"
+#include "swivel/core/lattice/knots.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "swivel/core/lattice/places_near.hpp"
 #include "swivel/core/problem/tool_path.hpp"
@@ -71,22 +72,30 @@ int middle_layer(const ToolPath& path, int first, int last) {
   return nearest;
 }
 
-std::vector<int> halved(const ToolPath& path, const std::vector<int>& knots,
-                        const std::set<int>& steps) {
+Knots::Knots(const ToolPath& whole, std::vector<int> layers)
+    : whole_(&whole),
+      layers_(std::move(layers)),
+      path_(std::make_shared<const ToolPath>(whole.with_layers(layers_))) {}
+
+std::optional<Knots> Knots::halved(const std::set<int>& steps) const {
   std::vector<int> finer;
-  for (std::size_t k = 0; k < knots.size(); ++k) {
-    finer.push_back(knots[k]);
-    if (steps.count(static_cast<int>(k)) > 0 && k + 1 < knots.size() && knots[k + 1] - knots[k] > 1)
-      finer.push_back(middle_layer(path, knots[k], knots[k + 1]));
+  for (std::size_t k = 0; k < layers_.size(); ++k) {
+    finer.push_back(layers_[k]);
+    if (steps.count(static_cast<int>(k)) > 0 && k + 1 < layers_.size() &&
+        layers_[k + 1] - layers_[k] > 1)
+      finer.push_back(middle_layer(*whole_, layers_[k], layers_[k + 1]));
   }
-  return finer;
+  if (finer.size() == layers_.size()) return std::nullopt;
+  Knots knots(*whole_, std::move(finer));
+  knots.halvings_ = halvings_;
+  knots.halvings_.push_back(steps);
+  return knots;
 }
 
-std::vector<Config> bounds_between_knots(const std::vector<int>& knots,
-                                         const std::vector<Config>& of_steps) {
-  std::vector<Config> bounds(knots.size() - 1, Config::Zero());
+std::vector<Config> Knots::bounds_between(const std::vector<Config>& of_steps) const {
+  std::vector<Config> bounds(layers_.size() - 1, Config::Zero());
   for (std::size_t k = 0; k < bounds.size(); ++k)
-    for (int i = knots[k]; i < knots[k + 1]; ++i)
+    for (int i = layers_[k]; i < layers_[k + 1]; ++i)
       bounds[k] += of_steps[of_steps.size() == 1 ? 0 : static_cast<std::size_t>(i)];
   return bounds;
 }

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "lattice/circle_turns.hpp"
 #include "lattice/given_posture.hpp"
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/angle.hpp"
@@ -67,17 +69,22 @@ class Step {
 
 }  // namespace
 
-Lattice::Lattice(const Chain& chain, const ToolPath& path, const PathProblem& problem,
+Lattice::Lattice(const Chain& chain, Knots knots, const PathProblem& problem,
                  const Config& fit_error)
     : chain_(&chain),
-      path_(&path),
+      knots_(std::move(knots)),
+      path_(&knots_.path()),
       limits_(problem.limits),
       cost_(problem.cost),
       starts_given_(problem.start.has_value()),
-      end_(problem.end && !path.ends_early()
-               ? std::optional(joints_given(PathEnd::kLast, problem, chain, path))
+      end_(problem.end && !path_->ends_early()
+               ? std::optional(joints_given(PathEnd::kLast, problem, chain, *path_))
                : std::nullopt),
-      fit_error_(fit_error) {
+      given_start_(problem.start
+                       ? std::optional(joints_given(PathEnd::kFirst, problem, chain, *path_))
+                       : std::nullopt),
+      fit_error_(fit_error),
+      steps_of_rows_(step_bounds_along(chain, path_of_rows(), limits_, problem.resolution)) {
   const bool timed = limits_.tool_speed || limits_.tool_turn_speed;
   const std::array<double, kDof> weights = joint_weights(cost_, chain);
   for (std::size_t k = 0; k < kDof; ++k) {
@@ -103,7 +110,7 @@ Lattice::Lattice(const Chain& chain, const ToolPath& path, const PathProblem& pr
   }
   double most_costly = *std::max_element(cost_scale_.begin(), cost_scale_.end());
   if (problem.roll && cost_.roll > 0) {
-    roll_weights_ = path.shares();
+    roll_weights_ = path_->shares();
     for (double& weight : roll_weights_)
       most_costly = std::max(most_costly, kPi * (weight *= cost_.roll));
   }
@@ -112,7 +119,8 @@ Lattice::Lattice(const Chain& chain, const ToolPath& path, const PathProblem& pr
   const double heaviest = *std::max_element(cost_scale_.begin(), cost_scale_.end());
   for (std::size_t k = 0; k < kDof; ++k)
     middle_weight_[k] = heaviest > 0 ? std::max(cost_scale_[k], 0.01 * heaviest) : 1;
-  set_row_step_bounds(step_bounds_along(chain, path, limits_, problem.resolution));
+  set_row_step_bounds(has_layers_between() ? knots_.bounds_between(steps_of_rows_)
+                                           : steps_of_rows_);
 }
 
 Config joint_steps(const Chain& chain, const Limits& limits) {
@@ -150,9 +158,92 @@ void Lattice::set_row_step_bounds(std::vector<Config> bounds) {
   for (const Config& most : row_step_bounds_) step_bounds_.push_back(most + 2 * fit_error_);
 }
 
-Lattice::InterpolatedEdge Lattice::interpolate_edge(int, int, const Config&, int,
-                                                    const Config&) const {
-  return {};
+void Lattice::treat_as_circles(const Joints& circles) {
+  circles_ = circles;
+  for (std::size_t j = 0; j < kDof; ++j) continuous_[j] = continuous_[j] || circles[j];
+}
+
+std::optional<Config> Lattice::row_between(int, int, int, int, double, const Config&) const {
+  return std::nullopt;
+}
+
+double Lattice::roll_of_row(int, int, int, int, double, const Config&) const {
+  return 0;
+}
+
+std::optional<Lattice::RollStep> Lattice::roll_between_rows(int i, const Config& from, double,
+                                                            const Config& to, double) const {
+  if (!chain_->roll) return std::nullopt;
+  const double change = std::abs(to[kDof - 1] - from[kDof - 1]),
+               most = step_bound_of_rows(i - 1)[kDof - 1];
+  return RollStep{change, most, most / limits_.roll_slope, change <= most};
+}
+
+void Lattice::check_row(int i, const Config& q, InterpolatedEdge& edge) const {
+  using Fault = InterpolatedEdge::Fault;
+  const double margin = limits_.joint_margin - kLimitTolerance;
+  for (std::size_t j = 0; j < kDof; ++j) {
+    const JointLimit& limit = chain_->limit[j];
+    const double x = q[static_cast<Eigen::Index>(j)];
+    const bool windowed = chain_->roll && j + 1 == kDof && !path_of_rows().layer(i).in_window(x);
+    if (windowed || (!continuous_[j] && !(x >= limit.lower + margin && x <= limit.upper - margin)))
+      edge.joints |= static_cast<std::uint8_t>(1u << j);
+  }
+  if (edge.joints)
+    edge.fault = Fault::kLimit;
+  else if (!manipulable(q))
+    edge.fault = Fault::kManipulability;
+}
+
+void Lattice::check_step(int i, const Config& from, double from_roll, const Config& to,
+                         double to_roll, InterpolatedEdge& edge) const {
+  using Fault = InterpolatedEdge::Fault;
+  const ToolPath& path = path_of_rows();
+  const Config move = to - from;
+  const auto roll = roll_between_rows(i, from, from_roll, to, to_roll);
+  if (roll && !roll->allowed) {
+    edge.fault = Fault::kRollSlope;
+    edge.roll = *roll;
+  } else if (!(move.cwiseAbs().array() <= step_bound_of_rows(i - 1).array()).all()) {
+    edge.fault = Fault::kStep;
+  } else if (!keeps_path_error(*chain_, path, i - 1, from, move, limits_.tool_path_error)) {
+    edge.fault = Fault::kPathError;
+  } else if (!keeps_angle_error(*chain_, path, i - 1, from, move, limits_.tool_angle_error)) {
+    edge.fault = Fault::kAngleError;
+  }
+}
+
+Lattice::InterpolatedEdge Lattice::interpolate_edge(int layer, int a, const Config& qa, int b,
+                                                    const Config& qb) const {
+  using Fault = InterpolatedEdge::Fault;
+  InterpolatedEdge edge;
+  if (!has_layers_between()) return edge;
+  const int first = layer_of_rows(layer), last = layer_of_rows(layer + 1);
+  const ToolPath& path = path_of_rows();
+  const double begin = path.layer(first).travel, way = path.layer(last).travel - begin;
+  const Config chord = delta(qa, qb);
+  Config from = qa;
+  double from_roll = roll_of_row(layer, a, b, first, 0, qa);
+  for (int i = first + 1; i <= last; ++i) {
+    const double t = i == last ? 1 : (path.layer(i).travel - begin) / way;
+    const std::optional<Config> to =
+        i == last ? Config(qa + chord) : row_between(layer, a, b, i, t, qa + t * chord);
+    if (to) {
+      edge.q = *to;
+      if (i < last) check_row(i, *to, edge);
+    } else {
+      edge.fault = Fault::kNoIk;
+    }
+    if (edge.fault != Fault::kNone) return edge;
+    const double to_roll = roll_of_row(layer, a, b, i, t, *to);
+    check_step(i, from, from_roll, *to, to_roll, edge);
+    if (edge.fault != Fault::kNone) return edge;
+    if (i < last) edge.rows.push_back(*to);
+    if (i < last && chooses_roll()) edge.rolls.push_back(to_roll);
+    from = *to;
+    from_roll = to_roll;
+  }
+  return edge;
 }
 
 std::optional<Config> Lattice::exact_config(int, int, const Config& q) const {
@@ -360,15 +451,57 @@ LatticeInfo Lattice::describe() const {
   return info;
 }
 
-std::vector<Config> Lattice::path_joints(const std::vector<int>& slots) const {
-  std::vector<Config> rows;
-  rows.reserve(slots.size());
-  for (const int slot : slots) {
-    const Config q = *exact_config(static_cast<int>(rows.size()), slot);
-    rows.push_back(rows.empty() ? q : Config(rows.back() + delta(rows.back(), q)));
+Lattice::Followed Lattice::followed(const std::vector<int>& slots) const {
+  constexpr double kTurned = 1e-3;  // rad, far less than a turn
+  Followed rows;
+  rows.q.reserve(slots.size());
+  for (int k = 0; k < static_cast<int>(slots.size()); ++k) {
+    const int slot = slots[static_cast<std::size_t>(k)];
+    Config q = *exact_config(k, slot);
+    if (k > 0 && has_layers_between()) {
+      const int before = slots[static_cast<std::size_t>(k) - 1];
+      const InterpolatedEdge edge = interpolate_edge(k - 1, before, rows.q.back(), slot, q);
+      rows.q.insert(rows.q.end(), edge.rows.begin(), edge.rows.end());
+      rows.rolls.insert(rows.rolls.end(), edge.rolls.begin(), edge.rolls.end());
+    }
+    rows.nodes.push_back(rows.q.size());
+    rows.q.push_back(rows.q.empty() ? q : Config(rows.q.back() + delta(rows.q.back(), q)));
+    if (chooses_roll())
+      rows.rolls.push_back(roll_of_row(k, slot, slot, layer_of_rows(k), 0, rows.q.back()));
   }
-  if (static_cast<int>(rows.size()) == layers()) turn_to_end(rows);
+  // The node of a given start may be in another turn.
+  if (given_start_ && !rows.q.empty()) {
+    const Config turns = *given_start_ - rows.q.front();
+    if (turns.cwiseAbs().maxCoeff() > kTurned) {
+      for (Config& q : rows.q) q += turns;
+      rows.q.front() = *given_start_;
+    }
+  }
+  if (static_cast<int>(slots.size()) == layers()) turn_to_end(rows.q);
   return rows;
+}
+
+CircleTurns Lattice::turns_along(const std::vector<Config>& rows) const {
+  const bool ends = end_ && static_cast<int>(rows.size()) == path_of_rows().size();
+  return circle_turns(*this, circles_, rows, starts_given_, ends ? &*end_ : nullptr);
+}
+
+bool Lattice::turn_into_limits(std::vector<Config>& rows) const {
+  if (circles_ == Joints{}) return true;
+  const CircleTurns turns = turns_along(rows);
+  if (!turns.fit()) return false;
+  for (Config& q : rows) q += turns.turn;
+  return true;
+}
+
+std::vector<Config> Lattice::path_joints(const std::vector<int>& slots) const {
+  std::vector<Config> rows = followed(slots).q;
+  return turn_into_limits(rows) ? rows : std::vector<Config>();
+}
+
+Lattice::Joints Lattice::off_limits(const std::vector<int>& slots) const {
+  if (circles_ == Joints{}) return {};
+  return turns_along(followed(slots).q).furthest_over();
 }
 
 void Lattice::turn_to_end(std::vector<Config>& rows) const {
@@ -384,14 +517,25 @@ void Lattice::turn_to_end(std::vector<Config>& rows) const {
   }
 }
 
+TrajectoryRow Lattice::row(int i, const Config& q, double roll) const {
+  return {path_of_rows().layer(i).s, 0, 0, q, roll};
+}
+
 std::vector<TrajectoryRow> Lattice::path_rows(const std::vector<int>& slots) const {
+  Followed joints = followed(slots);
+  if (!turn_into_limits(joints.q)) return {};
   std::vector<TrajectoryRow> rows;
-  rows.reserve(slots.size());
-  for (const Config& q : path_joints(slots)) {
-    const int i = static_cast<int>(rows.size()), slot = slots[rows.size()];
-    rows.push_back({path_->layer(i).s, phi(i, slot), branch(i, slot), q});
+  rows.reserve(joints.q.size());
+  const auto roll = [&] { return joints.rolls.empty() ? 0 : joints.rolls[rows.size()]; };
+  for (int k = 0; k < static_cast<int>(slots.size()); ++k) {
+    const int slot = slots[static_cast<std::size_t>(k)];
+    int between = k > 0 ? layer_of_rows(k - 1) : 0;
+    while (rows.size() < joints.nodes[static_cast<std::size_t>(k)])
+      rows.push_back(row(++between, joints.q[rows.size()], roll()));
+    rows.push_back(
+        {path_->layer(k).s, phi(k, slot), branch(k, slot), joints.q[rows.size()], roll()});
   }
-  count_from_waypoints(*chain_, *path_, rows);
+  count_from_waypoints(*chain_, path_of_rows(), rows);
   return rows;
 }
 

@@ -7,10 +7,8 @@
 #include <limits>
 #include <numeric>
 
-#include "lattice/circle_turns.hpp"
 #include "lattice/given_posture.hpp"
 #include "lattice/kinds/arc_layers.hpp"
-#include "lattice/knots.hpp"
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/timeline.hpp"
@@ -77,12 +75,10 @@ ArcLattice::Data ArcLattice::build(const Chain& chain, const LockMethod& method,
                                    const ToolPath& whole, const PathProblem& problem,
                                    const Budget& budget) {
   const TraceSpan span("arcs");
-  Data result;
-  std::vector<std::vector<Point>> points;
-  result.whole = &whole;
   const double knot = problem.resolution.knot_of_arcs();
-  if (knot > 0) result.set_knots(knots_along(whole, knot));
-  const ToolPath& path = result.path();
+  Data result(knot > 0 ? Knots(whole, knots_along(whole, knot)) : Knots(whole));
+  std::vector<std::vector<Point>> points;
+  const ToolPath& path = result.knots.path();
   if (problem.start) require_fits(PathEnd::kFirst, problem, chain, path);
   const bool ends_given = problem.end && !path.ends_early();
   if (ends_given) require_fits(PathEnd::kLast, problem, chain, path);
@@ -120,25 +116,17 @@ ArcLattice::Data ArcLattice::build(const Chain& chain, const LockMethod& method,
   return result;
 }
 
-void ArcLattice::Data::set_knots(std::vector<int> layers) {
-  path_of_knots = std::make_shared<const ToolPath>(whole->with_layers(layers));
-  knots = std::move(layers);
-}
-
 ArcLattice::ArcLattice(const Chain& chain, const LockMethod& method, const ToolPath& path,
                        const PathProblem& problem, const Budget& budget)
     : ArcLattice(chain, method, problem, build(chain, method, path, problem, budget)) {}
 
 ArcLattice::ArcLattice(const Chain& chain, const LockMethod& method, const PathProblem& problem,
                        Data&& data)
-    : ExplicitLattice(chain, data.path(), problem, std::move(data.points), data.circles),
+    : ExplicitLattice(chain, data.knots, problem, std::move(data.points), data.circles),
       method_(method),
       problem_(problem),
       data_(std::move(data)) {
   data_.points.clear();
-  if (!has_layers_between()) return;
-  steps_of_rows_ = step_bounds_along(chain, path_of_rows(), problem.limits, problem.resolution);
-  set_row_step_bounds(bounds_between_knots(data_.knots, steps_of_rows_));
 }
 
 int arc_branch(const Chain& chain, const LockMethod& method, const Config& q) {
@@ -191,97 +179,9 @@ std::optional<Config> ArcLattice::given(int layer) const {
   return layer == layers() - 1 ? end_ : std::nullopt;
 }
 
-bool ArcLattice::keeps_row(int i, const Config& from, const Config& to,
-                           InterpolatedEdge& fault) const {
-  using Fault = InterpolatedEdge::Fault;
-  fault.q = to;
-  const ToolPath& path = path_of_rows();
-  const double margin = limits_.joint_margin - kLimitTolerance;
-  for (std::size_t j = 0; j < kDof; ++j) {
-    const JointLimit& limit = chain_->limit[j];
-    const double x = to[static_cast<Eigen::Index>(j)];
-    const bool windowed = chain_->roll && j + 1 == kDof && !path.layer(i).in_window(x);
-    if (windowed || (!continuous_[j] && !(x >= limit.lower + margin && x <= limit.upper - margin)))
-      fault.joints |= static_cast<std::uint8_t>(1u << j);
-  }
-  const Config move = to - from;
-  const Config& most =
-      steps_of_rows_[steps_of_rows_.size() == 1 ? 0 : static_cast<std::size_t>(i - 1)];
-  const auto beyond = (move.cwiseAbs().array() > most.array()).eval();
-  if (fault.joints) {
-    fault.fault = Fault::kLimit;
-  } else if (!manipulable(to)) {
-    fault.fault = Fault::kManipulability;
-  } else if (chain_->roll && beyond[kDof - 1]) {
-    fault.fault = Fault::kRollSlope;
-    fault.roll = {std::abs(move[kDof - 1]), most[kDof - 1], most[kDof - 1] / limits_.roll_slope,
-                  false};
-  } else if (beyond.any()) {
-    fault.fault = Fault::kStep;
-  } else if (!keeps_path_error(*chain_, path, i - 1, from, move, limits_.tool_path_error)) {
-    fault.fault = Fault::kPathError;
-  } else if (!keeps_angle_error(*chain_, path, i - 1, from, move, limits_.tool_angle_error)) {
-    fault.fault = Fault::kAngleError;
-  }
-  return fault.fault == Fault::kNone;
-}
-
-Lattice::InterpolatedEdge ArcLattice::interpolate_edge(int layer, int, const Config& qa, int,
-                                                       const Config& qb) const {
-  InterpolatedEdge edge;
-  const int first = layer_of_rows(layer), last = layer_of_rows(layer + 1);
-  const ToolPath& path = path_of_rows();
-  const double begin = path.layer(first).travel, way = path.layer(last).travel - begin;
-  const Config chord = delta(qa, qb);
-  Config from = qa;
-  for (int i = first + 1; i <= last; ++i) {
-    std::optional<Config> to = qa + chord;
-    if (i < last)
-      to = data_.motion->image(qa + (path.layer(i).travel - begin) / way * chord,
-                               path.layer(i).tool);
-    if (!to) {
-      edge.fault = InterpolatedEdge::Fault::kNoIk;
-      return edge;
-    }
-    if (!keeps_row(i, from, *to, edge)) return edge;
-    if (i < last) edge.rows.push_back(*to);
-    from = *to;
-  }
-  return edge;
-}
-
-std::vector<Config> ArcLattice::followed(const std::vector<int>& slots) const {
-  std::vector<Config> rows;
-  for (std::size_t i = 0; i < slots.size(); ++i) {
-    const Config& q = point(static_cast<int>(i), slots[i]).q;
-    if (i > 0 && has_layers_between()) {
-      const int before = static_cast<int>(i) - 1;
-      const InterpolatedEdge edge =
-          interpolate_edge(before, slots[i - 1], rows.back(), slots[i], q);
-      rows.insert(rows.end(), edge.rows.begin(), edge.rows.end());
-    }
-    rows.push_back(i == 0 ? q : Config(rows.back() + delta(rows.back(), q)));
-  }
-  if (const auto start = given(0)) {
-    const Config turns = *start - rows.front();
-    for (Config& q : rows) q += turns;
-    rows.front() = *start;
-  }
-  if (static_cast<int>(slots.size()) == layers()) turn_to_end(rows);
-  return rows;
-}
-
-CircleTurns ArcLattice::turns_along(const std::vector<Config>& rows) const {
-  const bool ends = end_ && static_cast<int>(rows.size()) == path_of_rows().size();
-  return circle_turns(*this, circles(), rows, problem_.start.has_value(), ends ? &*end_ : nullptr);
-}
-
-std::vector<Config> ArcLattice::path_joints(const std::vector<int>& slots) const {
-  std::vector<Config> rows = followed(slots);
-  const CircleTurns turns = turns_along(rows);
-  if (!turns.fit()) return {};
-  for (Config& q : rows) q += turns.turn;
-  return rows;
+std::optional<Config> ArcLattice::row_between(int, int, int, int i, double,
+                                              const Config& chord) const {
+  return data_.motion->image(chord, path_of_rows().layer(i).tool);
 }
 
 std::vector<TrajectoryRow> ArcLattice::path_rows(const std::vector<int>& slots) const {
@@ -311,10 +211,6 @@ LatticeInfo ArcLattice::describe() const {
   return info;
 }
 
-Lattice::Joints ArcLattice::off_limits(const std::vector<int>& slots) const {
-  return turns_along(followed(slots)).furthest_over();
-}
-
 void ArcLattice::add_images(std::size_t joint, std::size_t first,
                             std::vector<WoundPoint>& images) const {
   constexpr std::int64_t kMostTurns = 128;  // more than a joint has whose turns are told apart
@@ -335,7 +231,10 @@ void ArcLattice::add_images(std::size_t joint, std::size_t first,
 std::unique_ptr<Lattice> ArcLattice::with_knots(const std::set<int>& steps,
                                                 const Budget& budget) const {
   const TraceSpan span("more knots");
+  std::optional<Knots> halved = knots().halved(steps);
+  if (!halved) return nullptr;
   Data finer = data_;
+  finer.knots = *std::move(halved);
   finer.next.clear();
   finer.on_circles.clear();
   finer.windings.clear();
@@ -343,14 +242,11 @@ std::unique_ptr<Lattice> ArcLattice::with_knots(const std::set<int>& steps,
   finer.points = data_.unwound.empty() ? all_points() : data_.unwound;
   finer.unwound.clear();
   const ArcLayerMaker maker(chain(), method_, problem_, *data_.motion);
-  std::vector<int> knots = data_.knots;
   for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
     budget.poll();
     const auto at = static_cast<std::ptrdiff_t>(*step) + 1;
-    const int first = knots[static_cast<std::size_t>(at) - 1],
-              last = knots[static_cast<std::size_t>(at)];
-    if (last - first < 2) continue;
-    const int middle = middle_layer(path_of_rows(), first, last);
+    if (!can_halve(*step)) continue;
+    const int middle = middle_layer(path_of_rows(), layer_of_rows(*step), layer_of_rows(*step + 1));
     auto &layer_before = finer.points[static_cast<std::size_t>(at) - 1],
          &layer_after = finer.points[static_cast<std::size_t>(at)];
     std::vector<Point> before = *layer_before, after = *layer_after;
@@ -370,11 +266,7 @@ std::unique_ptr<Lattice> ArcLattice::with_knots(const std::set<int>& steps,
     layer_before = share(std::move(before));
     layer_after = share(std::move(after));
     finer.points.insert(finer.points.begin() + at, share(std::move(made.points)));
-    knots.insert(knots.begin() + at, middle);
   }
-  if (knots.size() == data_.knots.size()) return nullptr;
-  finer.set_knots(std::move(knots));
-  finer.halvings.push_back(steps);
   std::unique_ptr<Lattice> lattice(new ArcLattice(chain(), method_, problem_, std::move(finer)));
   for (const Joints& told : data_.windings) lattice = lattice->with_windings(told);
   lattice->take_clearances(limits());

@@ -8,9 +8,7 @@
 #include <utility>
 
 #include "kinematics/newton/pose_newton.hpp"
-#include "lattice/circle_turns.hpp"
 #include "lattice/given_posture.hpp"
-#include "lattice/knots.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/memory.hpp"
 #include "swivel/core/base/timeline.hpp"
@@ -71,47 +69,24 @@ std::unique_ptr<KnotGrid> KnotGrid::make(const Chain& chain, const SrsArm& arm,
   if (problem.limits.step_error)
     throw InputError(problem.source,
                      "limits.step_error: allowed without path.roll, or for arms of six joints");
-  Layout layout;
-  layout.knots = knots_along(path, problem.resolution.knot_of_grids(chain.free_roll.has_value()));
-  layout.last_joint = last_joint;
+  Layout layout{
+      Knots(path, knots_along(path, problem.resolution.knot_of_grids(chain.free_roll.has_value()))),
+      last_joint};
   layout.wound.fill(!circles);
-  return std::unique_ptr<KnotGrid>(
-      new KnotGrid(chain, arm, path, problem, budget, std::move(layout)));
+  return std::unique_ptr<KnotGrid>(new KnotGrid(chain, arm, problem, budget, std::move(layout)));
 }
 
-KnotGrid::KnotGrid(const Chain& chain, const SrsArm& arm, const ToolPath& path,
-                   const PathProblem& problem, const Budget& budget, Layout layout)
-    : KnotGrid(chain, arm, path, problem, budget, std::move(layout),
-               std::make_unique<const ToolPath>(path.with_layers(layout.knots))) {}
-
-KnotGrid::KnotGrid(const Chain& chain, const SrsArm& arm, const ToolPath& path,
-                   const PathProblem& problem, const Budget& budget, Layout&& layout,
-                   std::unique_ptr<const ToolPath> path_of_knots)
-    : Lattice(chain, *path_of_knots, problem, arm.fit_error),
+KnotGrid::KnotGrid(const Chain& chain, const SrsArm& arm, const PathProblem& problem,
+                   const Budget& budget, Layout layout)
+    : Lattice(chain, layout.knots, problem, arm.fit_error),
       arm_(&arm),
       layout_(std::move(layout)),
       problem_(problem),
-      whole_(&path),
-      knot_path_(std::move(path_of_knots)),
-      planes_(carried_planes(arm, path, budget)),
+      planes_(carried_planes(arm, path_of_rows(), budget)),
       newton_(std::make_unique<const PoseNewton>(chain)),
-      scale2_(squared_weights(cost_scale())),
-      whole_step_bounds_(step_bounds_along(chain, path, problem.limits, problem.resolution)) {
-  const TraceSpan span("rolls");
-  // No edge moves a joint by half a turn that may be a circle.
-  constexpr double kLess = 1e-6;  // rad
-  std::vector<Config> bounds = bounds_between_knots(knots(), whole_step_bounds_);
-  circles_ = SrsLattice::possible_circles(chain, arm, problem, {});
-  for (Config& bound : bounds)
-    for (int j = 0; j < kDof; ++j)
-      if (circles_[static_cast<std::size_t>(j)])
-        bound[j] = std::min(bound[j], kPi - 2 * arm.fit_error[j] - kLess);
-  set_row_step_bounds(bounds);
-  for (std::size_t j = 0; j < kDof; ++j) {
-    circles_[j] = circles_[j] && !layout_.wound[j] && !(last_joint() && j + 1 == kDof);
-    continuous_[j] = continuous_[j] || circles_[j];
-    layout_.wound[j] = !circles_[j];
-  }
+      scale2_(squared_weights(cost_scale())) {
+  const TraceSpan span("knots");
+  lay_out_circles();
   circle_ = chain.free_roll && chain.free_roll->circle();
   windows_of_roll_ = chain.free_roll && problem.waypoints.front().roll.has_value();
   place_given(problem, budget);
@@ -124,7 +99,7 @@ KnotGrid::KnotGrid(const Chain& chain, const SrsArm& arm, const ToolPath& path,
     budget.poll();
     std::vector<double> rolls = rolls_along(value);
     ToolPath turned = at_rolls(rolls);
-    std::vector<ArmPlane> planes = planes_at(arm, planes_, knots(), turned);
+    std::vector<ArmPlane> planes = planes_at(arm, planes_, knots().layers(), turned);
     turned_.push_back(std::make_unique<Turned>(std::move(rolls), std::move(turned), chain, arm,
                                                of_nodes, budget, std::move(planes), last_joint(),
                                                circles_));
@@ -143,16 +118,35 @@ KnotGrid::KnotGrid(const Chain& chain, const SrsArm& arm, const ToolPath& path,
   find_near(problem);
 }
 
+void KnotGrid::lay_out_circles() {
+  constexpr double kLess = 1e-6;  // rad
+  Joints circles = SrsLattice::possible_circles(*chain_, *arm_, problem_, {});
+  std::vector<Config> bounds;
+  for (int step = 0; step + 1 < layers(); ++step) {
+    Config& bound = bounds.emplace_back(row_step_bound(step));
+    for (int j = 0; j < kDof; ++j)
+      if (circles[static_cast<std::size_t>(j)])
+        bound[j] = std::min(bound[j], kPi - 2 * arm_->fit_error[j] - kLess);
+  }
+  set_row_step_bounds(std::move(bounds));
+  for (std::size_t j = 0; j < kDof; ++j) {
+    circles[j] = circles[j] && !layout_.wound[j] && !(last_joint() && j + 1 == kDof);
+    layout_.wound[j] = !circles[j];
+  }
+  treat_as_circles(circles);
+}
+
 ToolPath KnotGrid::at_rolls(const std::vector<double>& rolls) const {
-  return chain_->free_roll ? knot_path_->with_rolls(rolls) : *knot_path_;
+  return chain_->free_roll ? path_->with_rolls(rolls) : *path_;
 }
 
 void KnotGrid::place_given(const PathProblem& problem, const Budget& budget) {
   const auto place = [&](PathEnd which, PathProblem only) {
-    const double roll =
-        chain_->free_roll ? roll_of_given(which, problem, *chain_, *whole_, *chain_->free_roll) : 0;
+    const double roll = chain_->free_roll ? roll_of_given(which, problem, *chain_, path_of_rows(),
+                                                          *chain_->free_roll)
+                                          : 0;
     ToolPath turned = at_rolls(std::vector<double>(static_cast<std::size_t>(layers()), roll));
-    std::vector<ArmPlane> planes = planes_at(*arm_, planes_, knots(), turned);
+    std::vector<ArmPlane> planes = planes_at(*arm_, planes_, knots().layers(), turned);
     return std::make_unique<const Given>(roll, std::move(turned), *chain_, *arm_, only, budget,
                                          std::move(planes), circles_);
   };
@@ -453,10 +447,27 @@ void KnotGrid::add_flips(int layer, int bit, const SlotRun& run, std::vector<Slo
   }
 }
 
-std::optional<Config> KnotGrid::image(int i, double roll, const Config& chord,
-                                      InterpolatedEdge& fault) const {
+double KnotGrid::chosen_roll(int layer, int a, int b, int i, double t) const {
+  if (!chain_->free_roll) return 0;
+  const double from = roll(layer, a);
+  if (t == 0) return from;
+  const double change = roll(layer + 1, b) - from;
+  const double chosen = from + t * (circle_ ? wrap_angle(change) : change);
+  if (t == 1) return chosen;
+  // Where a window narrows between two knots the roll follows its end.
+  const Roll& window = path_of_rows().layer(i).window;
+  return std::clamp(chosen, window.lower, std::max(window.lower, window.upper));
+}
+
+double KnotGrid::roll_of_row(int layer, int a, int b, int i, double t, const Config& q) const {
+  return last_joint() ? roll_between(path_of_rows().layer(i).tool, chain_->tool(q))
+                      : chosen_roll(layer, a, b, i, t);
+}
+
+std::optional<Config> KnotGrid::row_between(int layer, int a, int b, int i, double t,
+                                            const Config& chord) const {
   constexpr int kSteps = 6;
-  Pose tool = whole_->layer(i).tool;
+  Pose tool = path_of_rows().layer(i).tool;
   std::optional<PoseNewton::Point> point;
   if (last_joint()) {
     // The roll is what the other joints make it: joint 7 turns the tool meanwhile, and back.
@@ -473,97 +484,29 @@ std::optional<Config> KnotGrid::image(int i, double roll, const Config& chord,
       point = newton_->with_joint_at(q, turned(q), kDof - 1, *last_joint());
     }
   } else {
-    if (chain_->free_roll) tool = rolled(tool, roll);
+    if (chain_->free_roll) tool = rolled(tool, chosen_roll(layer, a, b, i, t));
     point = newton_->nearest(chord, tool, scale2_, kSteps);
   }
-  if (!point) {
-    fault.fault = InterpolatedEdge::Fault::kNoIk;
-    return std::nullopt;
-  }
-  const Config& q = fault.q = point->q;
-  for (int j = 0; j < kDof; ++j) {
-    const JointLimit& limit = chain_->limit[static_cast<std::size_t>(j)];
-    const double margin = limits_.joint_margin - kLimitTolerance;
-    if (!continuous_[static_cast<std::size_t>(j)] &&
-        !(q[j] >= limit.lower + margin && q[j] <= limit.upper - margin))
-      fault.joints |= static_cast<std::uint8_t>(1u << j);
-  }
-  if (fault.joints) fault.fault = InterpolatedEdge::Fault::kLimit;
-  if (fault.fault == InterpolatedEdge::Fault::kNone && !manipulable(q))
-    fault.fault = InterpolatedEdge::Fault::kManipulability;
-  return fault.fault == InterpolatedEdge::Fault::kNone ? std::optional(q) : std::nullopt;
+  return point ? std::optional(point->q) : std::nullopt;
+}
+
+std::optional<Lattice::RollStep> KnotGrid::roll_between_rows(int i, const Config&, double from_roll,
+                                                             const Config&, double to_roll) const {
+  if (!last_joint() && !windows_of_roll_) return std::nullopt;
+  const double travel = path_of_rows().layer(i).travel - path_of_rows().layer(i - 1).travel,
+               most = limits_.roll_slope * travel,
+               turned = std::abs(wrap_angle(to_roll - from_roll));
+  return RollStep{turned, most, travel, turned <= most + 1e-9};
 }
 
 TrajectoryRow KnotGrid::row(int i, const Config& q, double roll) const {
-  const Pose& tool = whole_->layer(i).tool;
+  const PathLayer& layer = path_of_rows().layer(i);
   const ArmPlane& plane = planes_[static_cast<std::size_t>(i)];
-  return {whole_->layer(i).s,
-          arm_angle(*arm_,
-                    chain_->free_roll ? carry_plane(*arm_, plane, rolled(tool, roll)) : plane, q),
-          arm_->branch(q), q, circle_ ? wrap_angle(roll) : roll};
-}
-
-double KnotGrid::roll_at(int i, const Config& q, double chosen) const {
-  return last_joint() ? roll_between(whole_->layer(i).tool, chain_->tool(q)) : chosen;
-}
-
-template <class Visit>
-Lattice::InterpolatedEdge KnotGrid::walk(int layer, int a, const Config& qa, int b,
-                                         const Config& qb, const Visit& visit) const {
-  InterpolatedEdge interpolated;
-  const int first = layer_of_rows(layer), last = layer_of_rows(layer + 1);
-  const double roll = this->roll(layer, a), roll_change = this->roll(layer + 1, b) - roll;
-  const double droll = circle_ ? wrap_angle(roll_change) : roll_change;
-  const Config chord = delta(qa, qb);
-  const double begin = whole_->layer(first).travel, way = whole_->layer(last).travel - begin;
-  // Where a window narrows between two knots the roll follows its end.
-  const auto chosen = [&](int i, double t) {
-    if (!chain_->free_roll) return 0.0;
-    const Roll& window = whole_->layer(i).window;
-    return std::clamp(roll + t * droll, window.lower, std::max(window.lower, window.upper));
-  };
-  Config from = qa;
-  double from_roll = roll_at(first, qa, roll);
-  for (int i = first; i < last; ++i) {
-    const double t = (whole_->layer(i + 1).travel - begin) / way;
-    std::optional<Config> to;
-    if (i + 1 == last)
-      to = qa + chord;
-    else
-      to = image(i + 1, chosen(i + 1, t), qa + t * chord, interpolated);
-    if (!to) return interpolated;
-    interpolated.q = *to;
-    const Config move = *to - from;
-    const double to_roll = roll_at(i + 1, *to, i + 1 == last ? roll + droll : chosen(i + 1, t));
-    const double travel = whole_->layer(i + 1).travel - whole_->layer(i).travel,
-                 most_turn = limits_.roll_slope * travel;
-    const double turned = std::abs(wrap_angle(to_roll - from_roll));
-    const Config& bound =
-        whole_step_bounds_[whole_step_bounds_.size() == 1 ? 0 : static_cast<std::size_t>(i)];
-    if (!((move.cwiseAbs().array() <= bound.array()).all())) {
-      interpolated.fault = InterpolatedEdge::Fault::kStep;
-    } else if ((last_joint() || windows_of_roll_) && !(turned <= most_turn + 1e-9)) {
-      interpolated.fault = InterpolatedEdge::Fault::kRollSlope;
-      interpolated.roll = {turned, most_turn, travel, false};
-    } else if (!keeps_path_error(*chain_, *whole_, i, from, move, limits_.tool_path_error)) {
-      interpolated.fault = InterpolatedEdge::Fault::kPathError;
-    } else if (!keeps_angle_error(*chain_, *whole_, i, from, move, limits_.tool_angle_error)) {
-      interpolated.fault = InterpolatedEdge::Fault::kAngleError;
-    }
-    if (interpolated.fault != InterpolatedEdge::Fault::kNone) return interpolated;
-    if (i + 1 < last) {
-      interpolated.rows.push_back(*to);
-      visit(row(i + 1, *to, to_roll));
-    }
-    from = *to;
-    from_roll = to_roll;
-  }
-  return interpolated;
-}
-
-Lattice::InterpolatedEdge KnotGrid::interpolate_edge(int layer, int a, const Config& qa, int b,
-                                                     const Config& qb) const {
-  return walk(layer, a, qa, b, qb, [](const TrajectoryRow&) {});
+  return {
+      layer.s,
+      arm_angle(*arm_,
+                chain_->free_roll ? carry_plane(*arm_, plane, rolled(layer.tool, roll)) : plane, q),
+      arm_->branch(q), q, circle_ ? wrap_angle(roll) : roll};
 }
 
 LatticeInfo KnotGrid::describe() const {
@@ -574,53 +517,9 @@ LatticeInfo KnotGrid::describe() const {
   return info;
 }
 
-std::vector<TrajectoryRow> KnotGrid::followed(const std::vector<int>& slots) const {
-  std::vector<TrajectoryRow> rows;
-  for (int k = 0; k < static_cast<int>(slots.size()); ++k) {
-    const int slot = slots[static_cast<std::size_t>(k)];
-    Config q = *exact_config(k, slot);
-    if (k > 0) {
-      const Config before = rows.back().q;  // of the knot before
-      static_cast<void>(walk(k - 1, slots[static_cast<std::size_t>(k) - 1], before, slot, q,
-                             [&](const TrajectoryRow& row) { rows.push_back(row); }));
-      q = rows.back().q + delta(rows.back().q, q);
-    }
-    rows.push_back({path_->layer(k).s, phi(k, slot), branch(k, slot), q,
-                    roll_at(layer_of_rows(k), q, roll(k, slot))});
-  }
-  if (static_cast<int>(slots.size()) < layers()) return rows;
-  std::vector<Config> joints;
-  for (const TrajectoryRow& row : rows) joints.push_back(row.q);
-  turn_to_end(joints);
-  for (std::size_t k = 0; k < rows.size(); ++k) rows[k].q = joints[k];
-  return rows;
-}
-
-CircleTurns KnotGrid::turns_along(const std::vector<TrajectoryRow>& rows, std::size_t slots) const {
-  std::vector<Config> joints;
-  for (const TrajectoryRow& row : rows) joints.push_back(row.q);
-  const bool ends = end_ && static_cast<int>(slots) == layers();
-  return circle_turns(*this, circles_, joints, starts_given_, ends ? &*end_ : nullptr);
-}
-
-std::vector<TrajectoryRow> KnotGrid::path_rows(const std::vector<int>& slots) const {
-  std::vector<TrajectoryRow> rows = followed(slots);
-  count_from_waypoints(*chain_, *whole_, rows);
-  if (circles_ == Joints{}) return rows;
-  const CircleTurns turns = turns_along(rows, slots.size());
-  if (!turns.fit()) return {};
-  for (TrajectoryRow& row : rows) row.q += turns.turn;
-  return rows;
-}
-
-Lattice::Joints KnotGrid::off_limits(const std::vector<int>& slots) const {
-  if (circles_ == Joints{}) return {};
-  return turns_along(followed(slots), slots.size()).furthest_over();
-}
-
 std::unique_ptr<Lattice> KnotGrid::laid_out(Layout layout, const Budget& budget) const {
   std::unique_ptr<Lattice> lattice(
-      new KnotGrid(*chain_, *arm_, *whole_, problem_, budget, std::move(layout)));
+      new KnotGrid(*chain_, *arm_, problem_, budget, std::move(layout)));
   lattice->take_clearances(limits_);
   return lattice;
 }
@@ -635,10 +534,10 @@ std::unique_ptr<Lattice> KnotGrid::with_windings(const Joints& joints) const {
 
 std::unique_ptr<Lattice> KnotGrid::with_knots(const std::set<int>& steps,
                                               const Budget& budget) const {
+  std::optional<Knots> halved = knots().halved(steps);
+  if (!halved) return nullptr;
   Layout layout = layout_;
-  layout.knots = halved(*whole_, knots(), steps);
-  if (layout.knots.size() == knots().size()) return nullptr;
-  layout.halvings.push_back(steps);
+  layout.knots = *std::move(halved);
   return laid_out(std::move(layout), budget);
 }
 

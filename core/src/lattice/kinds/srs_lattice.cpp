@@ -9,7 +9,6 @@
 
 #include "kinematics/kernels/kernels.hpp"
 #include "kinematics/srs/exact_chain_turned.hpp"
-#include "lattice/circle_turns.hpp"
 #include "lattice/given_posture.hpp"
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/angle.hpp"
@@ -210,7 +209,7 @@ SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& pa
                        const PathProblem& problem, const Budget& budget,
                        std::vector<ArmPlane> planes, std::optional<double> last_joint,
                        const Joints& circles)
-    : Lattice(chain, path, problem, arm.fit_error),
+    : Lattice(chain, Knots(path), problem, arm.fit_error),
       id_(next_id()),
       source_(problem.source),
       has_arcs_(problem.resolution.arcs),
@@ -229,11 +228,11 @@ SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& pa
 
   const auto m = static_cast<std::size_t>(layers());
   reach_.reserve(m);
-  circles_.reserve(m);  // half a kilobyte each: touched as they come
+  elbow_circles_.reserve(m);  // half a kilobyte each: touched as they come
   for (int i = 0; i < layers(); ++i) {
     if (i % 64 == 0) budget.poll(Stage::kLattice, i, layers());
     reach_.push_back(reach_status(arm, plane(i).reach));
-    auto& of_layer = circles_.emplace_back();
+    auto& of_layer = elbow_circles_.emplace_back();
     if (reach_.back() == ReachStatus::kReachable)
       of_layer = elbow_circles(arm, plane(i), path.layer(i).tool);
   }
@@ -268,7 +267,7 @@ void SrsLattice::set_circles(const Joints& circles,
     const auto joint = static_cast<Eigen::Index>(j);
     constexpr double kUnbounded = std::numeric_limits<double>::infinity();
     const bool rests = last_joint_ && j == kLastJoint;  // within its limits at every arm angle
-    circle_joints_[j] = circles[j] && !rests;
+    circles_[j] = circles[j] && !rests;
     continuous_[j] = limit.continuous || limit.wide() || rests || circles[j];
     if (rests) {
       images_[j] = {*last_joint_ - kPi, kUnbounded, 1};
@@ -293,8 +292,8 @@ void SrsLattice::place_nodes(const std::array<std::optional<Config>, 2>& given,
                              const Budget& budget) {
   const Images& images = images_[kElbowJoint];
   elbow_alive_.clear();
-  for (std::size_t i = 0; i < circles_.size(); ++i)
-    for (const ElbowCircle& circle : circles_[i])  // one elbow angle serves the whole circle
+  for (std::size_t i = 0; i < elbow_circles_.size(); ++i)
+    for (const ElbowCircle& circle : elbow_circles_[i])  // one elbow angle serves the whole circle
       elbow_alive_.push_back(reach_[i] == ReachStatus::kReachable &&
                              image_from(circle.q4, images.base) <= images.upper);
   if (given[0]) start_ = placed(0, *given[0]);
@@ -307,7 +306,7 @@ std::unique_ptr<Lattice> SrsLattice::with_windings(const Joints& joints) const {
   std::unique_ptr<SrsLattice> wound(new SrsLattice(*this));
   wound->id_ = next_id();
   wound->told_apart_.push_back(joints);
-  Joints circles = circle_joints_;
+  Joints circles = circles_;
   for (std::size_t j = 0; j < kDof; ++j) circles[j] = circles[j] && !joints[j];
   std::array<std::optional<Config>, 2> given;
   if (start_) given[0] = start_->row;
@@ -328,25 +327,6 @@ int SrsLattice::slot_on_circles(int, int slot) const {
     solution = solution * images_[k].count + winding_images(solution_of(slot) % windings_, j);
   }
   return solution * angles_ + angle_of(slot);
-}
-
-CircleTurns SrsLattice::turns_along(const std::vector<Config>& rows) const {
-  const bool ends = end_ && static_cast<int>(rows.size()) == layers();
-  return circle_turns(*this, circle_joints_, rows, starts_given_, ends ? &*end_ : nullptr);
-}
-
-std::vector<Config> SrsLattice::path_joints(const std::vector<int>& slots) const {
-  std::vector<Config> rows = Lattice::path_joints(slots);
-  if (circle_joints_ == Joints{}) return rows;
-  const CircleTurns turns = turns_along(rows);
-  if (!turns.fit()) return {};
-  for (Config& q : rows) q += turns.turn;
-  return rows;
-}
-
-Lattice::Joints SrsLattice::off_limits(const std::vector<int>& slots) const {
-  if (circle_joints_ == Joints{}) return {};
-  return turns_along(Lattice::path_joints(slots)).furthest_over();
 }
 
 namespace {
@@ -436,7 +416,7 @@ SrsLattice::Given SrsLattice::placed(int layer, const Config& q) const {
 std::optional<Config> SrsLattice::fitted(int layer, const Config& q, double phi) const {
   const auto i = static_cast<std::size_t>(layer);
   if (reach_[i] != ReachStatus::kReachable) return std::nullopt;
-  Config fitted = srs_ik(*arm_, circles_[i], phi, arm_->branch(q));
+  Config fitted = srs_ik(*arm_, elbow_circles_[i], phi, arm_->branch(q));
   if (singular(fitted)) return std::nullopt;
   for (int k = 0; k < kDof; ++k) {
     fitted[k] = q[k] + wrap_angle(fitted[k] - q[k]);
@@ -490,8 +470,9 @@ std::optional<double> SrsLattice::elbow_angle(int layer, int elbow) const {
   const Images& images = images_[kElbowJoint];
   if (images.count > 1 || continuous_[kElbowJoint] || is_given(layer) || !elbow_alive(layer, elbow))
     return std::nullopt;
-  return image_from(circles_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(elbow)].q4,
-                    images.base);
+  return image_from(
+      elbow_circles_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(elbow)].q4,
+      images.base);
 }
 
 void SrsLattice::lay_out(int layer, int first, int count, LayerNodes& out) const {
@@ -591,7 +572,7 @@ TripleTask SrsLattice::triple_task(const ElbowCircle& circle, int triple) const 
 void SrsLattice::solve_part(int elbow, int begin, int end, LayerNodes& out) const {
   if (!elbow_alive(out.layer_, elbow) || is_given(out.layer_)) return;
   const ElbowCircle& circle =
-      circles_[static_cast<std::size_t>(out.layer_)][static_cast<std::size_t>(elbow)];
+      elbow_circles_[static_cast<std::size_t>(out.layer_)][static_cast<std::size_t>(elbow)];
   const int first_solution = elbow ? kElbowBit * windings_ : 0;
   double* const data = out.data_.data();
   const std::array<LayerNodes::Offsets, 2>& sign = out.shared_[static_cast<std::size_t>(elbow)];
@@ -681,7 +662,7 @@ std::optional<Config> SrsLattice::solved(int layer, int slot, double sine, doubl
   const int branch = branch_of(slot), elbow = branch & kElbowBit ? 1 : 0;
   if (!elbow_alive(layer, elbow)) return std::nullopt;
   const ElbowCircle& circle =
-      circles_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(elbow)];
+      elbow_circles_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(elbow)];
   Config q;
   double excess = 0;
   for (int triple = 0; triple < 2; ++triple) {
@@ -737,7 +718,7 @@ Lattice::NodeFault SrsLattice::fault(int layer, int slot) const {
   if (reach == ReachStatus::kOutOfReach) return {NodeStatus::kNoIk};
   if (reach == ReachStatus::kSingular) return {NodeStatus::kSingular};
   Config q = only ? only->row
-                  : srs_ik(*arm_, circles_[static_cast<std::size_t>(layer)], phi(layer, slot),
+                  : srs_ik(*arm_, elbow_circles_[static_cast<std::size_t>(layer)], phi(layer, slot),
                            branch_of(slot));
   if (singular(q)) return {NodeStatus::kSingular};
   if (only) return fault;

@@ -54,7 +54,8 @@ void SrsLattice::prepare_arcs() {
 void SrsLattice::triple_arcs(int layer, int solution, int triple,
                              std::vector<AngleArc>& out) const {
   const int branch = solution / windings_;
-  const ElbowCircle& circle = circles_[static_cast<std::size_t>(layer)][branch & kElbowBit ? 1 : 0];
+  const ElbowCircle& circle =
+      elbow_circles_[static_cast<std::size_t>(layer)][branch & kElbowBit ? 1 : 0];
   const auto winding = static_cast<std::size_t>(triple_winding(solution, triple));
   const TripleLimits& limits = triple_limits_[static_cast<std::size_t>(triple)][winding];
   limits.arcs(triple == 0 ? circle.shoulder : circle.wrist,
@@ -65,12 +66,13 @@ bool SrsLattice::elbow_within(int layer, int solution) const {
   const int elbow = elbow_side_of(solution);
   if (!elbow_alive(layer, elbow)) return false;
   const Images& images = images_[3];
-  const double turns =
-      std::ceil((images.base -
-                 circles_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(elbow)].q4) /
-                kTwoPi);
-  const double q4 = circles_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(elbow)].q4 +
-                    kTwoPi * (turns + winding_images(solution % windings_, 3));
+  const double turns = std::ceil(
+      (images.base -
+       elbow_circles_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(elbow)].q4) /
+      kTwoPi);
+  const double q4 =
+      elbow_circles_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(elbow)].q4 +
+      kTwoPi * (turns + winding_images(solution % windings_, 3));
   return q4 <= images.upper;
 }
 

@@ -81,7 +81,7 @@ struct LatticeInfo {
     std::optional<double> gap;
     /// An estimate: by what share of its cost the answer may be dearer than a path that changes its
     /// redundancy by any slope, docs/theory.md "As the resolution goes to zero"; none of metrics
-    /// other than l2, and where there is no answer.
+    /// other than l2, of seven joints with a roll, and where there is no answer.
     std::optional<double> bias;
     /// False: time ended before steps that are worth it were halved.
     bool halved = true;

@@ -74,8 +74,8 @@ class ExplicitLattice : public Lattice {
  protected:
   /// The nodes of each layer; lattices share those of layers that are alike.
   using Layers = std::vector<std::shared_ptr<const std::vector<Point>>>;
-  ExplicitLattice(const Chain& chain, const ToolPath& path, const PathProblem& problem,
-                  Layers layers, const std::array<bool, kDof>& circles);
+  ExplicitLattice(const Chain& chain, Knots knots, const PathProblem& problem, Layers layers,
+                  const std::array<bool, kDof>& circles);
   [[nodiscard]] static Layers shared(std::vector<std::vector<Point>> layers);
   [[nodiscard]] const Layers& all_points() const { return points_; }
 

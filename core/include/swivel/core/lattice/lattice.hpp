@@ -11,12 +11,14 @@
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/lattice/body_pose_classes.hpp"
+#include "swivel/core/lattice/knots.hpp"
 #include "swivel/core/lattice/lattice_description.hpp"
 #include "swivel/core/problem/path_problem.hpp"
 #include "swivel/core/problem/tool_path.hpp"
 
 namespace swivel {
 
+struct CircleTurns;
 struct TrajectoryRow;
 
 // rad: a joint may be outside its limits by so much
@@ -94,19 +96,21 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
   [[nodiscard]] bool asks_manipulability() const { return limits_.manipulability > 0; }
 
   // --- layers of the tool's path between two layers of the lattice
-  /// Returns whether the lattice has nodes only at every few layers of the tool's path
-  /// (knot_grid.hpp). What nodes and moves must keep then also holds at the layers between, and
-  /// is part of an edge's validity.
-  [[nodiscard]] virtual bool has_layers_between() const { return false; }
+  /// Returns whether the lattice has nodes only at its knots, every few layers of the tool's path.
+  /// Between two knots the joints follow the chord from node to node, evenly over the travel, each
+  /// layer's moved onto its tool pose by Newton steps of least weighted norm. What nodes and moves
+  /// must keep then also holds at the layers between, and is part of an edge's validity.
+  [[nodiscard]] bool has_layers_between() const { return !knots_.are_all(); }
+  /// Returns the layers of path_of_rows() that are layers of the lattice.
+  [[nodiscard]] const Knots& knots() const { return knots_; }
   /// Returns the path that has a layer for each row of a trajectory: path(), or the finer path that
   /// includes the layers between if has_layers_between().
-  [[nodiscard]] virtual const ToolPath& path_of_rows() const { return *path_; }
+  [[nodiscard]] const ToolPath& path_of_rows() const { return knots_.whole(); }
   /// Returns the layer of path_of_rows() at which `layer` of the lattice is.
-  [[nodiscard]] virtual int layer_of_rows(int layer) const { return layer; }
+  [[nodiscard]] int layer_of_rows(int layer) const { return knots_.layer(layer); }
   /// Returns whether a step has layers between that may have nodes in a lattice by with_knots().
-  [[nodiscard]] virtual bool can_halve(int step) const {
-    static_cast<void>(step);
-    return false;
+  [[nodiscard]] bool can_halve(int step) const {
+    return layer_of_rows(step + 1) - layer_of_rows(step) > 1;
   }
   /// Returns a lattice that has a layer more in the middle of each of some steps, given by the
   /// layers at which they begin; those without layers between are left out. The nodes of all other
@@ -118,7 +122,7 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
     return nullptr;
   }
   /// Returns the steps of each with_knots() call that led to this lattice, the first one first.
-  [[nodiscard]] virtual std::vector<std::set<int>> halvings() const { return {}; }
+  [[nodiscard]] const std::vector<std::set<int>>& halvings() const { return knots_.halvings(); }
   /// How far a move turns the tool about its own z axis, compared with what limits.roll_slope
   /// allows for the distance that the tool travels meanwhile.
   struct RollStep {
@@ -141,6 +145,7 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
       kAngleError
     };
     std::vector<Config> rows;
+    std::vector<double> rolls;  ///< of the rows, rad; none where no roll is chosen
     Fault fault = Fault::kNone;
     /// For kLimit: bit k is set if joint k is outside its limits.
     std::uint8_t joints = 0;
@@ -148,25 +153,27 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
     Config q = Config::Zero();
     RollStep roll;  ///< for kRollSlope
   };
-  [[nodiscard]] virtual InterpolatedEdge interpolate_edge(int layer, int a, const Config& qa, int b,
-                                                          const Config& qb) const;
+  [[nodiscard]] InterpolatedEdge interpolate_edge(int layer, int a, const Config& qa, int b,
+                                                  const Config& qb) const;
 
   // --- paths, each given by one slot for each layer from layer 0 on
-  /// Returns the joints of each row of a path; continuous joints are unwrapped so that they do not
-  /// jump. Returns an empty list if the lattice treats bounded joints of more than a turn as
-  /// circles and their unwrapped values leave the limits along this path.
-  [[nodiscard]] virtual std::vector<Config> path_joints(const std::vector<int>& slots) const;
-  /// Returns the trajectory rows of a path: the joints of path_joints() with path length, arm angle
-  /// and branch of each row. Includes the rows at the layers between if has_layers_between().
-  [[nodiscard]] virtual std::vector<TrajectoryRow> path_rows(const std::vector<int>& slots) const;
   using Joints = std::array<bool, kDof>;
-  /// Returns the joint that the lattice treats as a circle and that leaves its limits along a path
-  /// in every turn, of several the one that leaves them furthest. If the best path of a lattice has
-  /// none, it is the answer; else the turns of that joint must be told apart.
-  [[nodiscard]] virtual Joints off_limits(const std::vector<int>& slots) const {
-    static_cast<void>(slots);
-    return {};
-  }
+  /// Returns which joints are treated as circles although they are bounded: those with a range of
+  /// more than a turn, until with_windings() tells their turns apart.
+  [[nodiscard]] const Joints& circles() const { return circles_; }
+  /// Returns the joints of each row of a path, from layer 0 to that of its last slot, with those at
+  /// the layers between; joints that turn do not jump. Circles are turned as a whole so that all
+  /// rows are inside their limits and the first one is as near to the middle of its range as
+  /// possible, the lower of two equally near, or so that the path begins at the given start, or
+  /// ends at the given end. Returns an empty list if off_limits() has any.
+  [[nodiscard]] std::vector<Config> path_joints(const std::vector<int>& slots) const;
+  /// Returns the trajectory rows of a path: the joints of path_joints() with path length, arm angle
+  /// and branch of each row.
+  [[nodiscard]] virtual std::vector<TrajectoryRow> path_rows(const std::vector<int>& slots) const;
+  /// Returns the circle that leaves its limits along a path in every turn, of several the one that
+  /// leaves them furthest. If the best path of a lattice has none, it is the answer; else the turns
+  /// of that joint must be told apart.
+  [[nodiscard]] Joints off_limits(const std::vector<int>& slots) const;
   /// Returns a lattice in which the given joints are no longer circles: for each node, every
   /// combination of their values within the limits that differ by whole turns is a node of its own.
   /// Returns null for a lattice that treats no bounded joint as a circle.
@@ -305,7 +312,7 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
   /// Builds what all lattices share. `fit_error`: rad, by joint. Throws InputError if a speed limit
   /// of the tool or the time metric needs joint speeds that the robot does not state, if such a
   /// speed is outside of 1e-6 ... 1e6 rad/s, or if limits.joint_margin leaves a joint no range.
-  Lattice(const Chain& chain, const ToolPath& path, const PathProblem& problem,
+  Lattice(const Chain& chain, Knots knots, const PathProblem& problem,
           const Config& fit_error = Config::Zero());
   /// Returns the largest move of each joint, rad, on each step of a path; one entry if all steps
   /// are alike.
@@ -326,6 +333,8 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
     return std::round(middle_weight_[j] *
                       std::abs(x - (chain_->limit[j].lower + chain_->limit[j].upper) / 2) * steps_);
   }
+  /// Treats joints as circles from now on, besides those that are continuous.
+  void treat_as_circles(const Joints& circles);
   /// Turns the rows of a whole path that leads to a given end by whole turns of its joints, so that
   /// the last row is that end; rows that begin at a given start stay. Joints of the last row that
   /// equal the end's but for rounding become the end's, and on a closed path those of the first.
@@ -336,21 +345,67 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
   /// is within limits().step_error. Asked only if that is set.
   [[nodiscard]] virtual bool step_error_allowed(int layer, int a, int b) const = 0;
 
+  // --- rows between two knots, from slot a of `layer` to slot b of the next; `i` is the layer of
+  // path_of_rows(), which is at the share t of the way
+  /// Returns the joints at layer i to which Newton steps of least norm lead from those on the
+  /// chord; nothing where they lead to none. Asked only if has_layers_between().
+  [[nodiscard]] virtual std::optional<Config> row_between(int layer, int a, int b, int i, double t,
+                                                          const Config& chord) const;
+  /// Returns whether the roll is chosen besides the joints, so that rows have roll_of_row().
+  [[nodiscard]] virtual bool chooses_roll() const { return false; }
+  /// Returns the roll of the row with joints q at layer i, rad; at the nodes i is their layer, and
+  /// t 0 or 1.
+  [[nodiscard]] virtual double roll_of_row(int layer, int a, int b, int i, double t,
+                                           const Config& q) const;
+  /// Returns by how much the roll changes on the step to layer i between rows with joints and rolls
+  /// `from` and `to`, rad; nothing where that is not limited from row to row.
+  [[nodiscard]] virtual std::optional<RollStep> roll_between_rows(int i, const Config& from,
+                                                                  double from_roll,
+                                                                  const Config& to,
+                                                                  double to_roll) const;
+  /// Returns the row of joints at layer i at which the tool is turned by `roll`, rad. Asked only
+  /// of layers between.
+  [[nodiscard]] virtual TrajectoryRow row(int i, const Config& q, double roll) const;
+  /// Returns the largest |delta_j| on the step from layer i of path_of_rows(), rad.
+  [[nodiscard]] const Config& step_bound_of_rows(int i) const {
+    return steps_of_rows_[steps_of_rows_.size() == 1 ? 0 : static_cast<std::size_t>(i)];
+  }
+
   const Chain* chain_;
-  const ToolPath* path_;
+  Knots knots_;
+  const ToolPath* path_;  // that of the knots
   Limits limits_;
   Cost cost_;
   std::array<bool, kDof> continuous_{};  // wide joints and joints treated as circles too
+  Joints circles_{};                     // joints treated as circles although they are bounded
   bool starts_given_ = false;            // the path begins at PathProblem::start
   std::optional<Config> end_;            // PathProblem::end, unless the path ends early
 
  private:
+  /// The rows of a path, in whatever turn circles are.
+  struct Followed {
+    std::vector<Config> q;
+    std::vector<double> rolls;       // none unless chooses_roll()
+    std::vector<std::size_t> nodes;  // the row of each slot
+  };
+  [[nodiscard]] Followed followed(const std::vector<int>& slots) const;
+  [[nodiscard]] CircleTurns turns_along(const std::vector<Config>& rows) const;
+  /// Turns the rows of a path into the limits of the circles. Returns false if they do not fit.
+  bool turn_into_limits(std::vector<Config>& rows) const;
+  /// Notes what joints `q` of a layer of path_of_rows() between two knots do not keep, if anything.
+  void check_row(int i, const Config& q, InterpolatedEdge& edge) const;
+  /// Notes what the move to row `to` of layer i of path_of_rows() does not keep, if anything.
+  void check_step(int i, const Config& from, double from_roll, const Config& to, double to_roll,
+                  InterpolatedEdge& edge) const;
+
   std::array<double, kDof> cost_scale_{};
   double cost_unit_ = 1, steps_ = 1;  // steps_: coarse steps in a cost of 1, 2^24 / cost_unit_
   std::array<double, kDof> middle_weight_{};
-  std::vector<double> roll_weights_;  // by layer; empty where the roll costs nothing
+  std::vector<double> roll_weights_;   // by layer; empty where the roll costs nothing
+  std::optional<Config> given_start_;  // PathProblem::start
   Config fit_error_;
   std::vector<Config> step_bounds_, row_step_bounds_;  // one entry for all steps, or one for each
+  std::vector<Config> steps_of_rows_;                  // the same of path_of_rows()
 };
 
 /// Returns how far limits.joint_step lets each joint move between neighbouring layers: as many rad,

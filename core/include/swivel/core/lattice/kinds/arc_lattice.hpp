@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "swivel/core/base/budget.hpp"
@@ -13,8 +14,6 @@
 #include "swivel/core/lattice/explicit_lattice.hpp"
 
 namespace swivel {
-
-struct CircleTurns;
 
 /// Returns two bits that name a solution in reports: the sign of the determinant of the three axes
 /// on which `method`'s closed form is built, and that of the other three joints. For a method
@@ -37,11 +36,9 @@ struct CircleTurns;
 /// end takes the place of its layer's nodes. A bounded joint with a range of more than a turn is
 /// treated as a circle, and path_joints() finds its values.
 ///
-/// With `resolution.knot` only every few layers of the tool's path, the *knots*, have nodes.
-/// Between two of them the joints follow the chord from node to node, evenly over the travel, each
-/// layer's moved onto its tool pose by Newton steps of least weighted norm; what nodes and moves
-/// must keep holds at all of these layers (Lattice::has_layers_between). So a path may drift along
-/// the self-motion by less from layer to layer than nodes lie apart.
+/// With `resolution.knot` only every few layers of the tool's path, the *knots*, have nodes
+/// (Lattice::has_layers_between()). So a path may drift along the self-motion by less from layer to
+/// layer than nodes lie apart.
 class ArcLattice final : public ExplicitLattice {
  public:
   /// Builds the nodes of every layer. `chain` and `path` must outlive the lattice. If `method` has
@@ -61,33 +58,12 @@ class ArcLattice final : public ExplicitLattice {
   [[nodiscard]] LatticeInfo describe() const override;
   /// Returns the number of arcs of all layers together.
   [[nodiscard]] std::int64_t arcs() const { return data_.arcs; }
-  /// Returns which joints are treated as circles although they are bounded.
-  [[nodiscard]] const std::array<bool, kDof>& circles() const { return data_.circles; }
-
-  [[nodiscard]] bool has_layers_between() const override { return !data_.knots.empty(); }
-  [[nodiscard]] const ToolPath& path_of_rows() const override { return *data_.whole; }
-  [[nodiscard]] int layer_of_rows(int layer) const override {
-    return has_layers_between() ? data_.knots[static_cast<std::size_t>(layer)] : layer;
-  }
-  [[nodiscard]] InterpolatedEdge interpolate_edge(int layer, int a, const Config& qa, int b,
-                                                  const Config& qb) const override;
   [[nodiscard]] std::vector<TrajectoryRow> path_rows(const std::vector<int>& slots) const override;
-
-  /// Returns the rows of a path, with each circle turned as a whole so that all rows are inside its
-  /// limits and the first one is as near to the middle of its range as possible, the lower of two
-  /// equally near, or so that the path begins at the given start, or ends at the given end. Returns
-  /// an empty list if no turn of some joint keeps the limits and both.
-  [[nodiscard]] std::vector<Config> path_joints(const std::vector<int>& slots) const override;
-  [[nodiscard]] Joints off_limits(const std::vector<int>& slots) const override;
   [[nodiscard]] std::unique_ptr<Lattice> with_windings(const Joints& joints) const override;
-  [[nodiscard]] bool can_halve(int step) const override {
-    return layer_of_rows(step + 1) - layer_of_rows(step) > 1;
-  }
   /// Inserted knots have the images of the nodes of the knot before, and what fills the gaps. The
   /// nodes of other knots stay.
   [[nodiscard]] std::unique_ptr<Lattice> with_knots(const std::set<int>& steps,
                                                     const Budget& budget) const override;
-  [[nodiscard]] std::vector<std::set<int>> halvings() const override { return data_.halvings; }
   [[nodiscard]] std::vector<Joints> joints_with_windings() const override { return data_.windings; }
   [[nodiscard]] int slot_on_circles(int layer, int slot) const override {
     return data_.on_circles.empty()
@@ -103,6 +79,8 @@ class ArcLattice final : public ExplicitLattice {
 
  private:
   struct Data {
+    explicit Data(Knots of) : knots(std::move(of)) {}
+    Knots knots;
     Layers points;
     std::array<bool, kDof> circles{};
     std::vector<std::array<bool, kDof>> windings{};
@@ -112,31 +90,17 @@ class ArcLattice final : public ExplicitLattice {
     std::vector<std::vector<int>> on_circles{};
     std::int64_t arcs = 0;
     std::shared_ptr<const SelfMotion> motion{};
-    // The path whose layers have rows; its layers that have nodes, none where all have; and the
-    // path of these.
-    const ToolPath* whole = nullptr;
-    std::vector<int> knots{};
-    std::shared_ptr<const ToolPath> path_of_knots{};
     // The points before any with_windings() call, of a lattice by it that has layers between.
     Layers unwound{};
-    std::vector<std::set<int>> halvings{};
-    void set_knots(std::vector<int> layers);
-    [[nodiscard]] const ToolPath& path() const { return path_of_knots ? *path_of_knots : *whole; }
   };
   static Data build(const Chain& chain, const LockMethod& method, const ToolPath& path,
                     const PathProblem& problem, const Budget& budget);
   ArcLattice(const Chain& chain, const LockMethod& method, const PathProblem& problem, Data&& data);
 
-  /// Returns the rows of a path, unwrapped without jumps from the first one, in the turn of the
-  /// given start if there is one, else in that of the given end if they lead there.
-  [[nodiscard]] std::vector<Config> followed(const std::vector<int>& slots) const;
   /// Returns the posture that the problem gives for a layer; nothing if it gives none.
   [[nodiscard]] std::optional<Config> given(int layer) const;
-  /// Returns whether joints `to` keep their limits at layer `i` of the path of rows, and the move
-  /// there from `from` what steps of that path must keep; else writes the fault.
-  bool keeps_row(int i, const Config& from, const Config& to, InterpolatedEdge& fault) const;
-  /// Returns how rows of followed() fit into the limits of the circles.
-  [[nodiscard]] CircleTurns turns_along(const std::vector<Config>& rows) const;
+  [[nodiscard]] std::optional<Config> row_between(int layer, int a, int b, int i, double t,
+                                                  const Config& chord) const override;
   /// A node in one turn of each joint that is told apart, and a number that orders these turns.
   struct WoundPoint {
     std::int64_t turns;
@@ -149,8 +113,6 @@ class ArcLattice final : public ExplicitLattice {
   LockMethod method_;
   PathProblem problem_;  // for with_windings
   Data data_;            // without the points, which the base class keeps
-  // Step bounds of the path of rows, by step; one entry if all are alike.
-  std::vector<Config> steps_of_rows_;
 };
 
 }  // namespace swivel

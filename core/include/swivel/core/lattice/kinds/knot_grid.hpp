@@ -21,9 +21,7 @@ class PoseNewton;
 ///
 /// A step of either grid moves the joints by far more than a layer of the path does, so that a
 /// change between neighbouring layers would seldom pay. Between two knots the joints follow the
-/// chord from node to node, evenly over the travel, each layer's moved onto its tool pose by Newton
-/// steps of least weighted norm; the roll changes linearly. What nodes and moves must keep holds at
-/// all of these layers (Lattice::has_layers_between).
+/// chord (Lattice::has_layers_between()); the roll changes linearly.
 ///
 /// Nodes of one roll are those of an SrsLattice for a tool turned by that roll. Their arm angles
 /// are measured from the path's carried plane, turned by the smallest rotation that takes the tool
@@ -100,29 +98,9 @@ class KnotGrid final : public Lattice {
     return std::abs(angle - kPi * std::round(angle / kPi)) < kNear;
   }
 
-  [[nodiscard]] const ToolPath& path_of_rows() const override { return *whole_; }
-  /// Returns the layers of the whole path that are layers of the lattice.
-  [[nodiscard]] const std::vector<int>& knots() const { return layout_.knots; }
-  [[nodiscard]] int layer_of_rows(int layer) const override {
-    return layout_.knots[static_cast<std::size_t>(layer)];
-  }
-  [[nodiscard]] bool can_halve(int step) const override {
-    return layer_of_rows(step + 1) - layer_of_rows(step) > 1;
-  }
   /// Inserted knots have the rolls and arm angles of the others, in the same slots.
   [[nodiscard]] std::unique_ptr<Lattice> with_knots(const std::set<int>& steps,
                                                     const Budget& budget) const override;
-  [[nodiscard]] std::vector<std::set<int>> halvings() const override { return layout_.halvings; }
-  /// Returns the rows at all layers of the whole path along a path of the lattice, from layer 0 to
-  /// the path's last slot, with each circle in a turn as SrsLattice::path_joints() has it; an empty
-  /// list if off_limits() has any.
-  [[nodiscard]] std::vector<TrajectoryRow> path_rows(const std::vector<int>& slots) const override;
-
-  /// Returns which joints are circles.
-  [[nodiscard]] const Joints& circles() const { return circles_; }
-  /// Returns the circle that leaves its limits furthest along the rows of a path, as that of an
-  /// SrsLattice.
-  [[nodiscard]] Joints off_limits(const std::vector<int>& slots) const override;
   [[nodiscard]] std::unique_ptr<Lattice> with_windings(const Joints& joints) const override;
   [[nodiscard]] std::vector<Joints> joints_with_windings() const override {
     return layout_.told_apart;
@@ -188,9 +166,6 @@ class KnotGrid final : public Lattice {
   [[nodiscard]] std::optional<RollStep> roll_step(int layer, int a, const Config& q0, int b,
                                                   const Config& q1) const override;
   void successors(int layer, int a, std::vector<SlotRun>& out) const override;
-  [[nodiscard]] bool has_layers_between() const override { return true; }
-  [[nodiscard]] InterpolatedEdge interpolate_edge(int layer, int a, const Config& qa, int b,
-                                                  const Config& qb) const override;
 
  private:
   /// The rolls that nodes may have.
@@ -202,18 +177,18 @@ class KnotGrid final : public Lattice {
   };
   /// What tells lattices of one path apart.
   struct Layout {
-    std::vector<int> knots;
+    Knots knots;
     std::optional<double> last_joint;
     Joints wound{};  // no circles
-    std::vector<Joints> told_apart;
-    std::vector<std::set<int>> halvings;
-    Rolls rolls;  // none before the first lattice has chosen them
+    std::vector<Joints> told_apart{};
+    Rolls rolls{};  // none before the first lattice has chosen them
   };
-  KnotGrid(const Chain& chain, const SrsArm& arm, const ToolPath& path, const PathProblem& problem,
-           const Budget& budget, Layout layout);
-  KnotGrid(const Chain& chain, const SrsArm& arm, const ToolPath& path, const PathProblem& problem,
-           const Budget& budget, Layout&& layout, std::unique_ptr<const ToolPath> path_of_knots);
+  KnotGrid(const Chain& chain, const SrsArm& arm, const PathProblem& problem, const Budget& budget,
+           Layout layout);
   [[nodiscard]] std::unique_ptr<Lattice> laid_out(Layout layout, const Budget& budget) const;
+  /// Finds out which joints are circles, and keeps edges from moving one that may be by half a
+  /// turn.
+  void lay_out_circles();
   /// Returns the path of the knots for a tool that is turned by `rolls` there, rad.
   [[nodiscard]] ToolPath at_rolls(const std::vector<double>& rolls) const;
   /// Returns where joint 7 rests, rad, if it does.
@@ -225,11 +200,6 @@ class KnotGrid final : public Lattice {
   }
   /// Places the start and the end that the problem gives, each at the roll of its joints.
   void place_given(const PathProblem& problem, const Budget& budget);
-  /// Returns the rows of a path as path_rows() does, in whatever turn circles are.
-  [[nodiscard]] std::vector<TrajectoryRow> followed(const std::vector<int>& slots) const;
-  /// Returns the turns of the circles along the rows of a path of so many slots.
-  [[nodiscard]] CircleTurns turns_along(const std::vector<TrajectoryRow>& rows,
-                                        std::size_t slots) const;
   void choose_rolls(double droll);
   /// Returns the roll, rad, that an entry of Rolls::values stands for at each layer.
   [[nodiscard]] std::vector<double> rolls_along(int value) const;
@@ -241,19 +211,20 @@ class KnotGrid final : public Lattice {
   /// Returns the rank at which a node that a given start or end continues stands: 0 for the start,
   /// and the one nearest to its roll for the end.
   [[nodiscard]] int rank_beside(int layer) const;
-  /// Calls `visit(i, row)` for the layers i of the whole path between those of an edge.
-  template <class Visit>
-  InterpolatedEdge walk(int layer, int a, const Config& qa, int b, const Config& qb,
-                        const Visit& visit) const;
-  /// Returns the roll at layer i of the whole path, rad: the chosen one, or what it becomes with
-  /// joint 7 at rest.
-  [[nodiscard]] double roll_at(int i, const Config& q, double chosen) const;
-  /// Returns the joints at layer i of the whole path to which Newton steps of least norm lead from
-  /// those on a chord; if there are none, writes the reason to `fault`.
-  [[nodiscard]] std::optional<Config> image(int i, double roll, const Config& chord,
-                                            InterpolatedEdge& fault) const;
-  /// Returns the row of joints at layer i of the whole path at which the tool is turned by `roll`.
-  [[nodiscard]] TrajectoryRow row(int i, const Config& q, double roll) const;
+  /// Returns the roll that is chosen for layer i of the whole path, rad.
+  [[nodiscard]] double chosen_roll(int layer, int a, int b, int i, double t) const;
+  [[nodiscard]] std::optional<Config> row_between(int layer, int a, int b, int i, double t,
+                                                  const Config& chord) const override;
+  [[nodiscard]] bool chooses_roll() const override { return chain_->free_roll.has_value(); }
+  /// Returns the chosen roll, or what it becomes with joint 7 at rest.
+  [[nodiscard]] double roll_of_row(int layer, int a, int b, int i, double t,
+                                   const Config& q) const override;
+  /// The rolls of nodes keep roll_slope by near(). Between them windows and joint 7 at rest may
+  /// make the roll change faster.
+  [[nodiscard]] std::optional<RollStep> roll_between_rows(int i, const Config& from,
+                                                          double from_roll, const Config& to,
+                                                          double to_roll) const override;
+  [[nodiscard]] TrajectoryRow row(int i, const Config& q, double roll) const override;
   /// Appends the slots of a run of the next layer to which an edge may change a bit of the branch;
   /// all of them for none.
   void add_flips(int layer, int bit, const SlotRun& run, std::vector<SlotRun>& out) const;
@@ -296,15 +267,10 @@ class KnotGrid final : public Lattice {
 
   const SrsArm* arm_;
   Layout layout_;
-  Joints circles_{};
   PathProblem problem_;
-  const ToolPath* whole_;
-  std::unique_ptr<const ToolPath> knot_path_;
   std::vector<ArmPlane> planes_;  // by layer of the whole path, for a tool that is not turned
   std::unique_ptr<const PoseNewton> newton_;
-  Config scale2_;  // squares of the weights of Newton steps
-  // Step bounds of the whole path, by step; one entry if all are alike.
-  std::vector<Config> whole_step_bounds_;
+  Config scale2_;                                // squares of the weights of Newton steps
   bool circle_ = false;                          // rolls cover a whole turn
   bool windows_of_roll_ = false;                 // some waypoint has a window of rolls
   std::vector<std::unique_ptr<Turned>> turned_;  // by rank

@@ -154,15 +154,6 @@ class SrsLattice final : public Lattice {
   /// Returns the slot that stands for a given start or end in a layer for which is_given() holds.
   [[nodiscard]] int given_slot(int layer) const { return given(layer)->slot; }
 
-  /// Returns which joints are circles.
-  [[nodiscard]] const Joints& circles() const { return circle_joints_; }
-  /// Returns the joints of each row, without jumps, with each circle in a turn that keeps its
-  /// limits all along: of these the one in which the first row is nearest to the middle of the
-  /// range, or the one of the given start or end. Returns an empty list if off_limits() has any.
-  [[nodiscard]] std::vector<Config> path_joints(const std::vector<int>& slots) const override;
-  /// Returns the circle that leaves its limits furthest along a path, in its best turn or in that
-  /// of the given start or end: one at a time, since other paths may keep the others within.
-  [[nodiscard]] Joints off_limits(const std::vector<int>& slots) const override;
   [[nodiscard]] std::unique_ptr<Lattice> with_windings(const Joints& joints) const override;
   [[nodiscard]] std::vector<Joints> joints_with_windings() const override { return told_apart_; }
   [[nodiscard]] int slot_on_circles(int layer, int slot) const override;
@@ -337,8 +328,6 @@ class SrsLattice final : public Lattice {
     return elbow_alive_[static_cast<std::size_t>(2 * layer + elbow)];
   }
   SrsLattice(const SrsLattice&) = default;
-  /// Returns the turns of the circles along the rows of a path.
-  [[nodiscard]] CircleTurns turns_along(const std::vector<Config>& rows) const;
   /// Sets which joints are circles, and the images of all joints, which must hold the given start
   /// and end. Throws InputError for too many windings.
   void set_circles(const Joints& circles, const std::array<std::optional<Config>, 2>& given);
@@ -363,7 +352,6 @@ class SrsLattice final : public Lattice {
   std::uint64_t id_;
   std::string source_;  // the problem's, for messages
   bool has_arcs_ = false;
-  Joints circle_joints_{};
   std::vector<Joints> told_apart_;  // joints_with_windings()
   const SrsArm* arm_;
   std::optional<double> last_joint_;
@@ -373,7 +361,7 @@ class SrsLattice final : public Lattice {
   std::vector<double> sine_, cosine_;  // of the grid angles, three times around
   std::vector<ArmPlane> planes_;
   std::vector<ReachStatus> reach_;
-  std::vector<std::array<ElbowCircle, 2>> circles_;  // per layer; empty where out of reach
+  std::vector<std::array<ElbowCircle, 2>> elbow_circles_;  // per layer; empty where out of reach
   std::vector<std::uint8_t> elbow_alive_;  // [layer][elbow]: its angle lies within the limits
   std::optional<Given> start_, last_;
   std::optional<PoseErrorModel> pose_error_model_;          // for an arm that is not exact
