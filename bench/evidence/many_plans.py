@@ -51,6 +51,24 @@ def batch(data):
     return table(data / "batch.json")
 
 
+def throughput(data):
+    """Two lines for the README; None if its sets were not measured."""
+    file = data / "batch.json"
+    runs = Benchmarks(file)
+    rates = [
+        number(runs.get(f"{name}/plan_many/threads:{threads}", "plans_per_s"))
+        for name in ("doors", "obstacles") for threads in (1, 2)
+    ]
+    if not runs.matching("(doors|obstacles)/plan_many/.*"):
+        return None
+    return (
+        "Of [thousands of different problems](docs/performance.md#thousands-of-plans) "
+        f"`plan_many()` plans and proves {rates[0]} doors a second\n"
+        f"on one core and {rates[1]} on two; "
+        f"{rates[2]} and {rates[3]} where obstacles move and the path stays."
+    )
+
+
 if __name__ == "__main__":
     if len(sys.argv) != 2:
         sys.exit(__doc__)

@@ -6,7 +6,7 @@ import re
 import statistics
 from collections import Counter
 
-from many_plans import batch
+from many_plans import batch, throughput
 from measured import (
     PAPER_SETTINGS, RESOLUTION, SETTINGS, Benchmarks, TableOne, load, mean, median, solved
 )
@@ -400,7 +400,7 @@ BLOCKS = {
     block.__name__: block
     for block in (
         machine, experiments, table1, findings, planners, plans, scenes, first_plans, pieces,
-        peers, batch, headline
+        peers, batch, headline, throughput
     )
 }
 
