@@ -12,6 +12,7 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(os.environ["SWIVEL_SOURCE"]) / "bench/evidence"))
 import many_plans
+from measured_runs import MeasuredRuns
 
 # Only the release build has benchmarks.
 PROGRAM = os.environ.get("BATCH_BENCHMARK")
@@ -92,16 +93,8 @@ def row(name, **counters):
     }
 
 
-class Table(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.data = pathlib.Path(self.folder.name)
-
-    def tearDown(self):
-        self.folder.cleanup()
-
-    def write(self, *rows):
-        self.data.joinpath("batch.json").write_text(json.dumps({"context": {}, "benchmarks": rows}))
+class Table(MeasuredRuns):
+    FILE = "batch.json"
 
     def test_medians_and_ratios(self):
         self.write(

@@ -5,13 +5,13 @@ import os
 import pathlib
 import re
 import sys
-import tempfile
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(os.environ["SWIVEL_SOURCE"]) / "bench/evidence"))
 import planner_table
 import tables
 from measured import Benchmarks
+from measured_runs import MeasuredRuns
 
 
 def row(name, plan_ms, speed_up=None, calls=0, **counters):
@@ -30,16 +30,8 @@ def not_run(name, words="not run: more than 60 s a plan"):
     }
 
 
-class PlannerTable(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.data = pathlib.Path(self.folder.name)
-
-    def tearDown(self):
-        self.folder.cleanup()
-
-    def write(self, *rows):
-        self.data.joinpath("plans.json").write_text(json.dumps({"context": {}, "benchmarks": rows}))
+class PlannerTable(MeasuredRuns):
+    FILE = "plans.json"
 
     def test_medians_quartiles_and_what_was_not_run(self):
         self.write(

@@ -87,6 +87,13 @@ std::vector<TrajectoryRow> partial_rows(const Lattice& lattice, SlotPath path) {
   return rows;
 }
 
+/// Notes the furthest layer that a valid path reaches; -1: layer 0 is empty.
+void note_reached(const Lattice& lattice, int deepest, Diagnosis& diagnosis) {
+  if (deepest < 0) return;
+  diagnosis.reached_layer = deepest;
+  diagnosis.reached_s = lattice.path().layer(deepest).s;
+}
+
 bool same_pose(const Pose& a, const Pose& b) {
   return a.matrix() == b.matrix();
 }
@@ -495,9 +502,7 @@ struct Planner::Impl {
       if (!found.deepest) return;
       if (!options.evidence.cause) {
         diagnosis.cause.kind = Cause::Kind::kNotAsked;
-        if (*found.deepest < 0) return;
-        diagnosis.reached_layer = *found.deepest;
-        diagnosis.reached_s = lattice.path().layer(*found.deepest).s;
+        note_reached(lattice, *found.deepest, diagnosis);
         return;
       }
       diagnose(lattice, *world, rule, path, options.evidence.layers, budget, diagnosis,
@@ -515,8 +520,7 @@ struct Planner::Impl {
     result.partial = partial_rows(lattice, path);
     Diagnosis& diagnosis = *result.diagnosis;
     diagnosis.cause.kind = Cause::Kind::kNotClosed;
-    diagnosis.reached_layer = *found.deepest;
-    diagnosis.reached_s = lattice.path().layer(*found.deepest).s;
+    note_reached(lattice, *found.deepest, diagnosis);
     diagnosis.layers_known = lattice.layers();
     diagnosis.complete = true;
   }

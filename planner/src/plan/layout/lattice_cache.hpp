@@ -12,10 +12,10 @@
 
 namespace swivel {
 
-/// Lattices of tasks of one robot, with their cost-to-go as if nothing were in the way. Planners on
-/// several threads share them, so that what depends on a path alone is computed once however many
-/// scenes it is planned in. Values are the same, bit for bit, as those that a planner computes by
-/// itself.
+/// Lattices of tasks of one robot, with their cost-to-go without obstacles. Planners on several
+/// threads share them, so that the lattice of a path is made once, however many scenes the path is
+/// planned in. A planner that shares a lattice gets the values that it would compute by itself, bit
+/// for bit.
 class LatticeCache {
  public:
   /// What the planners of one task share.

@@ -31,8 +31,8 @@ using ProblemOf = std::function<Problem(std::uint64_t number)>;
 /// Plans problems 0 ... `count` - 1 of one robot, of one arm, and calls row_done with their rows in
 /// that order, one call at a time; EpisodeRow::episode is the number. A row is what plan() or
 /// plan_job() has for its problem, whatever the others are, at any number of threads; only
-/// plan_ms is not. What is computed of a path alone (lattice, cost-to-go without obstacles) is
-/// shared by problems whose task is the same, if not too many others are between them.
+/// plan_ms is not. Problems with equal tasks share the lattice and the cost-to-go without
+/// obstacles, unless problems with more than some 60 other tasks come between them.
 ///
 /// `like`: a problem of the same kind and robot, for which `robot` was prepared. A plan that takes
 /// longer than its own time has a row of status kTimeout. Bad input in one problem and an internal
