@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Measures re-planning of experiment C while an object walks 1 mm a step: a planner that remembers,
-// compared with fresh plans on a prepared robot.
+// Measures re-planning while an object walks 1 mm a step: a planner that remembers, compared with
+// fresh plans on a prepared robot.
 //
-//   replanning [STEPS]    default 1000
+//   replanning [STEPS] [PROBLEM ...]    default 1000 steps of experiment C
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "arguments.hpp"
@@ -64,7 +65,7 @@ void walk(const PathProblem& problem, const char* setting, const std::string& ob
     unequal += !equal;
   }
   std::printf(
-      "%-4s %-5s %5d steps, %5d solved, %d unequal; us: remembered %7.0f (99 %% %7.0f), fresh "
+      "%-4s %-12s %5d steps, %5d solved, %d unequal; us: remembered %7.0f (99 %% %7.0f), fresh "
       "%7.0f (99 %% %7.0f), ratio %.2f\n",
       setting, object.c_str(), steps, solved, unequal, at(remembered, 0.5), at(remembered, 0.99),
       at(fresh, 0.5), at(fresh, 0.99), at(remembered, 0.5) / at(fresh, 0.5));
@@ -74,14 +75,22 @@ void walk(const PathProblem& problem, const char* setting, const std::string& ob
 
 int main(int argc, char** argv) {
   int steps = 1000;
+  std::vector<std::string> files;
   CLI::App app(
-      "Re-planning experiment C while an object walks 1 mm a step: a planner that remembers beside "
-      "fresh plans.",
+      "Re-planning while an object walks 1 mm a step: a planner that remembers beside fresh plans.",
       "replanning");
   app.add_option("steps", steps, "steps of each object")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  app.add_option("problems", files, "problem files of one arm and one path")
+      ->default_str("experiment C at two resolutions");
   if (const auto code = bench::read_arguments(app, argc, argv)) return *code;
+  for (const std::string& file : files) {
+    const PathProblem problem = io::load_path_problem(file);
+    std::printf("%s\n", file.c_str());
+    for (const SceneObject& object : problem.scene) walk(problem, "", object.name, steps);
+  }
+  if (!files.empty()) return 0;
   PathProblem problem = io::load_path_problem(SWIVEL_DATA_DIR "/problems/experiment_c.yaml");
   for (const bench::Setting& setting : bench::kSettings) {
     if (setting.name[1] != '1' && setting.name[1] != '4') continue;

@@ -9,6 +9,7 @@ namespace swivel {
 
 bool CostToGo::restart(const Budget& budget) {
   budget_ = budget;
+  if (restarts_ && unremoved_ == Unremoved::kSaved) keep_removals();
   verdicts_.clear();
   ik_nodes_ = edges_ = 0;
   if (unremoved_ == Unremoved::kSaved) restore(*saved_);

@@ -2,6 +2,7 @@
 #include "swivel/graph/verdicts/verdicts.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace swivel {
 
@@ -38,6 +39,29 @@ void Verdicts::clear() {
   removed_edges_.clear();
   pending.clear();
   removed_ = 0;
+  costs_changed_ = false;
+}
+
+Verdicts::Removals Verdicts::removals() const {
+  Removals all;
+  std::vector<std::size_t> removed;
+  std::copy_if(known_.begin(), known_.end(), std::back_inserter(removed),
+               [&](std::size_t node) { return node_[node] == Verdict::kRemoved; });
+  std::sort(removed.begin(), removed.end());
+  // A node that was valid first is listed twice.
+  removed.erase(std::unique(removed.begin(), removed.end()), removed.end());
+  std::size_t layer = 0;
+  for (const std::size_t node : removed) {
+    while (layer + 1 < first_.size() && first_[layer + 1] <= node) ++layer;
+    all.nodes[static_cast<int>(layer)].push_back(static_cast<int>(node - first_[layer]));
+  }
+  for (const auto& [at, edges] : removed_edges_) {
+    auto& slots = all.edges[at];
+    for (const auto& [a, heads] : edges.tails)
+      for (const HalfEdge& edge : heads) slots.emplace_back(a, edge.other);
+    std::sort(slots.begin(), slots.end());
+  }
+  return all;
 }
 
 void Verdicts::keep_node(int layer, int slot) {
@@ -122,6 +146,7 @@ std::vector<double>& Verdicts::costs_of(int layer) {
 }
 
 void Verdicts::set_cost(int layer, int slot, double cost) {
+  costs_changed_ = true;
   if (cost_known_.empty()) cost_known_.resize(node_.size());
   cost_known_[index(layer, slot)] = 1;
   if (static_cast<std::size_t>(layer) + 1 == first_.size()) {
@@ -135,6 +160,7 @@ void Verdicts::set_cost(int layer, int slot, double cost) {
 }
 
 void Verdicts::raise_exit_costs(std::span<const double> costs) {
+  costs_changed_ = true;
   if (exit_costs_.empty()) exit_costs_.resize(costs.size());
   const int last = static_cast<int>(first_.size()) - 1;
   std::vector<double>* all = nullptr;

@@ -149,7 +149,7 @@ struct PlannedRun {
       add_counters(counters, alone_counters);
       return found;
     };
-    FoundOnKnots found = search_on_knots(first, search, options, budget);
+    FoundOnKnots found = search_on_knots(first, search, halve_steps, options, budget);
     hooked.reset();
     validity.reset();
     Searched& last = found.finer ? *found.finer : first;

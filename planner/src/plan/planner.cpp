@@ -12,6 +12,7 @@
 #include "measure/measure_rows.hpp"
 #include "plan/answer.hpp"
 #include "plan/layout/lattice_cache.hpp"
+#include "plan/layout/searched_lattices.hpp"
 #include "plan/layout/told_turns.hpp"
 #include "plan/search.hpp"
 #include "plan/search_on_knots.hpp"
@@ -129,13 +130,14 @@ struct Planner::Impl {
   /// What depends on the task and on the pose of the path's frame.
   struct Layout {
     explicit Layout(std::shared_ptr<const TaskLattice> own)
-        : task(std::move(own)), first{task->first(), nullptr} {}
+        : task(std::move(own)), first{task->first(), nullptr}, lattices(task->first()) {}
     explicit Layout(std::shared_ptr<LatticeCache::Entry> entry) : Layout(entry->lattice()) {
       shared = std::move(entry);
     }
     std::shared_ptr<LatticeCache::Entry> shared;  // null: `task` is this planner's own
     std::shared_ptr<const TaskLattice> task;
     Searched first;  // searched by every plan
+    SearchedLattices lattices;
     /// The lattice that the last plan searched after `first`, because the path there left the
     /// limits of joints that are treated as circles, each in its nearest turn, or because joint 7
     /// at rest had no path.
@@ -146,10 +148,9 @@ struct Planner::Impl {
   // robot_warnings(); kept, as a robot does not change
   std::optional<std::vector<std::string>> of_robot;
   std::unique_ptr<CostToGo> recycled;  // of a lattice before this one, for its memory
-  ClearanceMemory memory;              // depends on the lattice, the robot and the limits
   // What failed on the lattice before this one, with the same bodies.
   std::vector<FailureHint> failure_hints;
-  std::uint64_t plans = 0;  // number of plans in `memory`
+  std::uint64_t plans = 0;  // number of plans so far
   // By object: the first plan in which it stands as it does now.
   std::vector<std::uint64_t> met;
   std::optional<Executor> executor;
@@ -170,10 +171,12 @@ struct Planner::Impl {
 
   // --- changes
   void path_changed() {
-    if (layout && layout->first.cost_to_go) recycled = std::move(layout->first.cost_to_go);
+    if (layout) {
+      if (layout->first.cost_to_go) recycled = std::move(layout->first.cost_to_go);
+      auto failed = layout->lattices.memory_of(*layout->first.lattice).failure_hints();
+      if (!failed.empty()) failure_hints = std::move(failed);
+    }
     layout.reset();
-    if (auto failed = memory.failure_hints(); !failed.empty()) failure_hints = std::move(failed);
-    memory = {};
     viewable = false;
   }
   void scene_changed() {
@@ -233,8 +236,7 @@ struct Planner::Impl {
     same_kinematics.limits = Lattice::with_clearances(own.limits, task.limits);
     own = task;
     if (layout && !layout->shared && same_task(task, same_kinematics)) {
-      layout->first.lattice->take_clearances(task.limits);
-      memory = {};
+      layout->lattices.take_clearances(task.limits);
       scene_changed();
     } else {
       path_changed();
@@ -273,6 +275,7 @@ struct Planner::Impl {
       layout = std::make_unique<Layout>(
           std::make_shared<const TaskLattice>(*robot, problem, hooks, budget));
     layout->second.reset();
+    layout->lattices.forget_old();
     result.time_ms["lattice"] = watch.lap();
     if (world_is_old) world = World(world ? *world : robot->world(), problem, budget);
     world_is_old = false;
@@ -302,13 +305,14 @@ struct Planner::Impl {
     // The cost of a state by the caller's hook may depend on joint 7, which must then be free.
     const bool rests = layout->task->coaxial() && !options.hooks.cost;
     if (rests || !layout->task->coaxial()) {
-      Found found = search_knots(layout->first, remembers, rule, options, budget, result);
+      Found found = search_knots(layout->first, rule, options, budget, result);
       found = tell_turns_apart(std::move(found), rule, options, budget, result);
       if (!layout->task->coaxial() || !found.decided || !found.outcome.path.empty()) return found;
     }
-    layout->second = Searched{layout->task->free_lattice(*robot, problem, budget), nullptr};
+    const auto free = [&] { return layout->task->free_lattice(*robot, problem, budget); };
+    layout->second = Searched{single_use ? free() : layout->lattices.free_lattice(free), nullptr};
     result.lattice = info_of(*layout->second->lattice, robot->arm_class());
-    Found found = search_knots(*layout->second, false, rule, options, budget, result);
+    Found found = search_knots(*layout->second, rule, options, budget, result);
     return tell_turns_apart(std::move(found), rule, options, budget, result);
   }
   /// Returns `found`, the answer of the lattice searched last, if its path is the answer of the
@@ -321,14 +325,18 @@ struct Planner::Impl {
     std::string note;
     std::vector<std::vector<int>> failed;
     for (;;) {
-      const Lattice& lattice = *layout->last().lattice;
+      const std::shared_ptr<Lattice> circles = layout->last().lattice;
+      const Lattice& lattice = *circles;
       if (found.decided && found.outcome.path.empty() && !note.empty())
         result.warnings.push_back(note);
       if (!found.decided || found.outcome.path.empty()) return found;
+      if (found.rows.empty()) found.rows = lattice.path_rows(found.outcome.path);
+      if (!found.rows.empty()) return found;
       const Lattice::Joints off = lattice.off_limits(found.outcome.path);
-      if (off == Lattice::Joints{}) return found;
       if (note.empty()) note = turns_note(lattice, found.outcome.path, off, problem);
-      Searched wound{lattice.with_windings(off), nullptr};
+      Searched wound{
+          single_use ? lattice.with_windings(off) : layout->lattices.with_windings(circles, off),
+          nullptr};
       if (!was_eager) {
         const CostToGo& before = *layout->last().cost_to_go;
         add_failed_nodes(before.verdicts(), lattice, failed);
@@ -337,7 +345,7 @@ struct Planner::Impl {
       }
       layout->second = std::move(wound);
       result.lattice = info_of(*layout->second->lattice, robot->arm_class());
-      found = search_knots(*layout->second, false, rule, options, budget, result,
+      found = search_knots(*layout->second, rule, options, budget, result,
                            was_eager ? nullptr : &failed);
     }
   }
@@ -350,14 +358,19 @@ struct Planner::Impl {
   };
   /// Searches a lattice, and lattices with more knots where that is worth it (search_on_knots());
   /// layout->last() is the lattice of the answer. Other parameters as of search().
-  Found search_knots(Searched& searched, bool remembered, const EdgeRule& rule,
-                     const PlanOptions& options, const Budget& budget, PlanResult& result,
+  Found search_knots(Searched& searched, const EdgeRule& rule, const PlanOptions& options,
+                     const Budget& budget, PlanResult& result,
                      const std::vector<std::vector<int>>* failed = nullptr) {
     FoundOnKnots on_knots = search_on_knots(
         searched,
         [&](Searched& level, const Searched* coarser, const Budget& time, KnotSearch* knots) {
-          return search(level, remembered && coarser == nullptr, rule, options, time, result,
+          return search(level, rule, options, time, result,
                         {coarser == nullptr ? failed : nullptr, coarser}, knots);
+        },
+        [&](const std::shared_ptr<Lattice>& lattice, const std::set<int>& steps,
+            const Budget& time) {
+          return single_use ? halve_steps(lattice, steps, time)
+                            : layout->lattices.with_knots(lattice, steps, time);
         },
         options, budget);
     if (on_knots.finer) layout->second = std::move(*on_knots.finer);
@@ -374,11 +387,9 @@ struct Planner::Impl {
     if (layout->shared && &searched == &layout->first) layout->shared->begin(*made);
     return made;
   }
-  /// Searches one lattice. `remembered`: use what earlier plans found out, and keep what this one
-  /// does. `knots` as search_lazily() takes it.
-  Found search(Searched& searched, bool remembered, const EdgeRule& rule,
-               const PlanOptions& options, const Budget& budget, PlanResult& result,
-               const Known& known, KnotSearch* knots) {
+  /// Searches one lattice. `knots` as search_lazily() takes it.
+  Found search(Searched& searched, const EdgeRule& rule, const PlanOptions& options,
+               const Budget& budget, PlanResult& result, const Known& known, KnotSearch* knots) {
     const Lattice& lattice = *searched.lattice;
     Executor& threads = threads_of(options);
     Counters counters;
@@ -403,21 +414,22 @@ struct Planner::Impl {
     if (known.failed) remove_failed_nodes(*known.failed, lattice, cost_to_go->verdicts());
     if (known.coarser) take_from_coarser(*known.coarser, searched, !options.hooks.cost);
     std::optional<World> changed;
-    if (remembered) {
-      memory.begin(++plans, met, *world, problem.scene);
-      if (plans > 1 && !memory.changed().empty()) changed.emplace(*world, memory.changed());
+    ClearanceMemory* const memory = remembers ? &layout->lattices.memory_of(lattice) : nullptr;
+    if (memory) {
+      memory->begin(plans, met, *world, problem.scene);
+      if (!memory->changed().empty()) changed.emplace(*world, memory->changed());
     }
     CollisionValidity validity(lattice, *world, rule, problem.limits.edges,
                                distance_proofs_of(options), threads, chunks_of(options, lattice),
-                               budget, remembered ? &memory : nullptr,
-                               changed ? &*changed : nullptr);
+                               budget, memory, changed ? &*changed : nullptr);
     HookedValidity hooked(lattice, validity, options.hooks, budget);
     std::optional<EagerValidity> eager;
     if (was_eager) eager.emplace(lattice, hooked, true, budget);
-    const std::vector<FailureHint> asked_before =
-        remembered ? std::exchange(failure_hints, {}) : std::vector<FailureHint>();
+    const std::vector<FailureHint> asked_before = memory && &searched == &layout->first
+                                                      ? std::exchange(failure_hints, {})
+                                                      : std::vector<FailureHint>();
     found = search_lazily(*cost_to_go, swept, eager ? static_cast<Validity&>(*eager) : hooked,
-                          remembered ? memory.failures() : PriorFailures{}, asked_before, options,
+                          memory ? memory->failures() : PriorFailures{}, asked_before, options,
                           counters, result.time_ms, knots);
     add_counters(validity, counters);
     add_counters(counters, result.counters);
@@ -447,7 +459,7 @@ struct Planner::Impl {
     lay_out(options.hooks, budget, result);
     const EdgeRule rule = world->edge_rule(robot->radii());
     watch.lap();
-    const Found found = [&] {
+    Found found = [&] {
       const std::jthread ahead = meshes_ahead(options);
       return search(rule, options, budget, result);
     }();
@@ -462,7 +474,7 @@ struct Planner::Impl {
     result.status = found.outcome.path.empty() ? PlanStatus::kInfeasible : PlanStatus::kSolved;
     if (result.status == PlanStatus::kSolved) {
       result.cost = result.lattice.cost = found.outcome.cost;
-      result.trajectory = lattice.path_rows(path);
+      result.trajectory = std::move(found.rows);
       require_same_turns(lattice, result.trajectory, problem.source);
       measure_margins(robot->arm().chain, layout->task->path(), result.trajectory, result);
       result.cost = cost_of_rows(lattice, path, result.trajectory, result.cost);
@@ -532,6 +544,7 @@ struct Planner::Impl {
     result.planner = to_string(options.planner);
     result.threads = threads_of(options).threads();
     viewable = false;
+    ++plans;
     try {
       prepare(budget);
       result.time_ms["prepare"] = watch.lap();
@@ -632,7 +645,7 @@ void Planner::remove(const std::string& object) {
   std::erase_if(next.vary, [&](const Variation& vary) { return vary.object == object; });
   impl_->replace(std::move(next));
   impl_->met.erase(impl_->met.begin() + static_cast<std::ptrdiff_t>(k));
-  impl_->memory.object_removed(static_cast<int>(k));
+  if (impl_->layout) impl_->layout->lattices.object_removed(static_cast<int>(k));
   impl_->bodies_changed();
 }
 

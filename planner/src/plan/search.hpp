@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "swivel/collision/proofs/verdict.hpp"
 #include "swivel/core/answer/plan.hpp"
@@ -60,6 +61,9 @@ struct Found {
   /// A valid path from layer 0: the whole path; if there is none, the one to the deepest layer; if
   /// the lazy search was stopped, the part that was proved.
   SlotPath valid_path;
+  /// Lattice::path_rows() of outcome.path, where it was asked for; empty if it was not, or if a
+  /// joint leaves its limits.
+  std::vector<TrajectoryRow> rows;
 };
 
 /// Searches with the eager planner or eager_dp (options.planner), which validate the whole lattice

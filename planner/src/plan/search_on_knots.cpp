@@ -24,12 +24,12 @@ std::vector<int> layers_in(const Lattice& coarser, const Lattice& finer) {
   return here;
 }
 
-/// Returns the cost of a path's rows, as far as turns of joints are told apart; kUnreachable where
-/// none was found.
-double row_cost(const Lattice& lattice, const Found& found) {
+/// Fills Found::rows and returns what they cost, as far as turns of joints are told apart;
+/// kUnreachable where no path was found.
+double row_cost(const Lattice& lattice, Found& found) {
   if (found.outcome.path.empty()) return kUnreachable;
-  return cost_of_rows(lattice, found.outcome.path, lattice.path_rows(found.outcome.path),
-                      found.outcome.cost);
+  found.rows = lattice.path_rows(found.outcome.path);
+  return cost_of_rows(lattice, found.outcome.path, found.rows, found.outcome.cost);
 }
 
 /// Returns whether a lattice has no path, and layers without nodes lie beside the furthest one that
@@ -42,17 +42,17 @@ bool ends_between_knots(const Lattice& lattice, const Found& found) {
 }
 
 /// Returns a lattice that has nodes at all layers between the knots before and after a layer.
-std::unique_ptr<Lattice> with_all_layers_about(const Lattice& lattice, int layer,
-                                               const Budget& budget) {
-  const int first = lattice.layer_of_rows(std::max(0, layer - 1)),
-            last = lattice.layer_of_rows(std::min(layer + 1, lattice.layers() - 1));
-  std::unique_ptr<Lattice> finer;
+std::shared_ptr<Lattice> with_all_layers_about(const std::shared_ptr<Lattice>& lattice, int layer,
+                                               const HalveSteps& halve, const Budget& budget) {
+  const int first = lattice->layer_of_rows(std::max(0, layer - 1)),
+            last = lattice->layer_of_rows(std::min(layer + 1, lattice->layers() - 1));
+  std::shared_ptr<Lattice> finer;
   for (;;) {
-    const Lattice& now = finer ? *finer : lattice;
+    const std::shared_ptr<Lattice>& now = finer ? finer : lattice;
     std::set<int> steps;
-    for (int step = 0; step + 1 < now.layers(); ++step)
-      if (now.layer_of_rows(step) >= first && now.layer_of_rows(step) < last) steps.insert(step);
-    auto next = now.with_knots(steps, budget);
+    for (int step = 0; step + 1 < now->layers(); ++step)
+      if (now->layer_of_rows(step) >= first && now->layer_of_rows(step) < last) steps.insert(step);
+    auto next = halve(now, steps, budget);
     if (!next) return finer;
     finer = std::move(next);
   }
@@ -61,9 +61,9 @@ std::unique_ptr<Lattice> with_all_layers_about(const Lattice& lattice, int layer
 /// Searches finer and finer lattices, beginning with one that can be halved.
 class Levels {
  public:
-  Levels(Searched& first, const SearchLattice& search, const PlanOptions& options,
-         const Budget& budget)
-      : first_(first), search_(search), options_(options), budget_(budget) {}
+  Levels(Searched& first, const SearchLattice& search, const HalveSteps& halve,
+         const PlanOptions& options, const Budget& budget)
+      : first_(first), search_(search), halve_(halve), options_(options), budget_(budget) {}
 
   FoundOnKnots run() {
     best_ = search_(first_, nullptr, budget_, &knots_);
@@ -97,8 +97,8 @@ class Levels {
     Searched next;
     try {
       next.lattice = before.narrow.empty()
-                         ? with_all_layers_about(*last().lattice, *best_.deepest, time)
-                         : last().lattice->with_knots(before.narrow, time);
+                         ? with_all_layers_about(last().lattice, *best_.deepest, halve_, time)
+                         : halve_(last().lattice, before.narrow, time);
       found = search_(next, &last(), time, can_halve(*next.lattice) ? &knots_ : nullptr);
     } catch (const Stopped&) {
       if (!next.lattice) {  // the time was up before there was one
@@ -132,6 +132,7 @@ class Levels {
 
   Searched& first_;
   const SearchLattice& search_;
+  const HalveSteps& halve_;
   const PlanOptions& options_;
   const Budget& budget_;
   KnotSearch knots_;  // of the last lattice
@@ -220,9 +221,9 @@ void describe_knots(double cost, const Lattice& lattice, const std::vector<int>&
     knots->bias = bias_of_slopes(lattice, path, arc, info.grid.has_value());
 }
 
-FoundOnKnots search_on_knots(Searched& first, const SearchLattice& search,
+FoundOnKnots search_on_knots(Searched& first, const SearchLattice& search, const HalveSteps& halve,
                              const PlanOptions& options, const Budget& budget) {
-  if (can_halve(*first.lattice)) return Levels(first, search, options, budget).run();
+  if (can_halve(*first.lattice)) return Levels(first, search, halve, options, budget).run();
   return {search(first, nullptr, budget, nullptr), std::nullopt, std::nullopt};
 }
 

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "plan/search.hpp"
@@ -27,6 +28,11 @@ struct Searched {
 using SearchLattice = std::function<Found(Searched& searched, const Searched* coarser,
                                           const Budget& budget, KnotSearch* knots)>;
 
+/// Returns Lattice::with_knots() of a lattice, as it may be kept from earlier plans; null where
+/// there is none. Throws Stopped.
+using HalveSteps = std::function<std::shared_ptr<Lattice>(
+    const std::shared_ptr<Lattice>& lattice, const std::set<int>& steps, const Budget& budget)>;
+
 /// The answer of a lattice and of those with more knots.
 struct FoundOnKnots {
   Found found;
@@ -37,10 +43,18 @@ struct FoundOnKnots {
 
 /// Searches a lattice and, as long as that is worth it, lattices whose narrow steps between knots
 /// are halved (KnotSearch). Returns the cheapest answer of all, the coarsest of equal ones. With an
-/// answer it ends a while before the budget does, so that there is time to prove it. Throws as
-/// `search` does for the first lattice.
+/// answer it ends a while before the budget does, so that there is time to prove it. `halve` makes
+/// the lattices. Throws as `search` does for the first lattice.
 [[nodiscard]] FoundOnKnots search_on_knots(Searched& first, const SearchLattice& search,
-                                           const PlanOptions& options, const Budget& budget);
+                                           const HalveSteps& halve, const PlanOptions& options,
+                                           const Budget& budget);
+
+/// Makes a lattice with halved steps (HalveSteps).
+[[nodiscard]] inline std::shared_ptr<Lattice> halve_steps(const std::shared_ptr<Lattice>& lattice,
+                                                          const std::set<int>& steps,
+                                                          const Budget& budget) {
+  return lattice->with_knots(steps, budget);
+}
 
 /// Returns whether a lattice has a step that can be halved.
 [[nodiscard]] bool can_halve(const Lattice& lattice);

@@ -24,36 +24,39 @@ void ClearanceMemory::begin(std::uint64_t plan, std::vector<std::uint64_t> met, 
   // This is far more than a search tests. It bounds the memory of a planner that runs for days in a
   // changing scene.
   constexpr std::size_t kMost = 1'000'000;
-  if (nodes_.size() + edges_.size() > kMost) {
+  if (nodes_.size() + edges_.size() + rows_ > kMost) {
+    rows_ = 0;
     nodes_.clear();
     edges_.clear();
     failed_nodes_.clear();
     failed_edges_.clear();
   }
   learn();
-  plan_ = plan;
+  const std::uint64_t before = std::exchange(plan_, plan);
   met_ = std::move(met);
   world_ = &world;
   robot_bodies_ = static_cast<int>(world.bodies().size());
   unchanged_since_ = 0;
   const auto changed_before = std::exchange(changed_, {});
   for (std::size_t k = 0; k < met_.size(); ++k)
-    if (met_[k] == plan)
+    if (before > 0 && met_[k] > before)
       changed_.push_back(static_cast<int>(k));
     else
       unchanged_since_ = std::max(unchanged_since_, met_[k]);
   constexpr std::size_t kLongestRun = 10'000;
   if (changed_ != changed_before || stood_.size() == kLongestRun) {
-    run_ = plan;
+    run_.clear();
     stood_.clear();
   }
+  run_.push_back(plan);
   auto& poses = stood_.emplace_back();
   for (const int k : changed_) poses.push_back(scene[static_cast<std::size_t>(k)].pose);
   moved_since_.assign(stood_.size(), -1);
 }
 
 double ClearanceMemory::moved_since(std::uint64_t plan) {
-  const auto then = static_cast<std::size_t>(plan - run_);
+  const auto then =
+      static_cast<std::size_t>(std::lower_bound(run_.begin(), run_.end(), plan) - run_.begin());
   double& most = moved_since_[then];
   if (most >= 0) return most;
   most = 0;
@@ -65,6 +68,7 @@ double ClearanceMemory::moved_since(std::uint64_t plan) {
 void ClearanceMemory::object_removed(int object) {
   learn();
   changed_.clear();  // their numbers have changed
+  run_.clear();
   stood_.clear();
   const int body = robot_bodies_ + object;
   const auto renumber = [&](auto& findings) {
@@ -91,8 +95,8 @@ ClearanceMemory::Holds ClearanceMemory::holds(const Finding& finding) {
   }
   if (finding.plan == 0 || finding.plan < unchanged_since_) return Holds::kNothing;
   if (changed_.empty() || finding.plan == plan_) return Holds::kAll;
-  const bool kept =
-      finding.slack > 0 && finding.plan >= run_ && moved_since(finding.plan) < finding.slack;
+  const bool kept = finding.slack > 0 && finding.plan >= run_.front() &&
+                    moved_since(finding.plan) < finding.slack;
   return kept ? Holds::kAll : Holds::kUnlessChanged;
 }
 
@@ -101,7 +105,7 @@ const ClearanceMemory::NodeFinding* ClearanceMemory::node(int layer, int slot) c
   return found == nodes_.end() ? nullptr : &found->second;
 }
 
-const ClearanceMemory::Finding* ClearanceMemory::edge(int layer, int a, int b) const {
+const ClearanceMemory::EdgeFinding* ClearanceMemory::edge(int layer, int a, int b) const {
   const auto found = edges_.find({key(layer, a), b});
   return found == edges_.end() ? nullptr : &found->second;
 }
@@ -113,15 +117,18 @@ void ClearanceMemory::note_node(const NodeQuestion& question, const NodeAnswer& 
 }
 
 void ClearanceMemory::note_edge(const EdgeQuestion& question, bool valid, const BodyPair& pair,
-                                double slack) {
-  noted_edges_.push_back({{key(question.layer, question.a), question.b},
-                          {{plan_, valid, pair, false, slack}, question.qa, question.qb}});
+                                double slack, Rows rows) {
+  noted_edges_.push_back(
+      {{key(question.layer, question.a), question.b},
+       {{plan_, valid, pair, false, slack}, question.qa, question.qb, std::move(rows)}});
 }
 
 void ClearanceMemory::learn() {
-  const auto take = [](auto& noted, auto& findings, auto& failed) {
+  const auto take = [this](auto& noted, auto& findings, auto& failed) {
     for (auto& [key, finding] : noted) {
       auto& known = findings[key];
+      if constexpr (requires { finding.rows; })
+        if (!known.rows && finding.rows) rows_ += finding.rows->size();
       finding.listed = known.listed || !finding.valid;
       if (finding.listed && !known.listed) failed.push_back(key);
       known = finding;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <unordered_map>
 #include <vector>
 
@@ -16,7 +17,7 @@ namespace swivel {
 
 /// Remembers what earlier plans found about nodes and edges of one lattice. Findings hold as long
 /// as limits and robot stay; if a scene object has moved since, they hold for all other pairs of
-/// bodies. Plans are numbered from 1 on.
+/// bodies. Plans are numbered from 1 on; those that do not ask about this lattice are left out.
 class ClearanceMemory {
  public:
   /// Stands for a failure without a pair of bodies: manipulability, or the tool's path.
@@ -35,6 +36,14 @@ class ClearanceMemory {
     Config q;
     NodeAnswer answer;
   };
+  /// Joint configurations along an edge.
+  using Rows = std::shared_ptr<const std::vector<Config>>;
+  struct EdgeFinding : Finding {
+    Config qa, qb;
+    /// The configurations at the layers between and at the end of the edge, where the lattice has
+    /// layers between (Lattice::interpolate_edge()); null if one of them breaks a limit.
+    Rows rows;
+  };
   /// How much of a finding holds for the present plan.
   enum class Holds {
     kNothing,
@@ -46,7 +55,8 @@ class ClearanceMemory {
   /// is now. The world must live until the next plan begins.
   void begin(std::uint64_t plan, std::vector<std::uint64_t> met, const World& world,
              const std::vector<SceneObject>& scene);
-  /// Returns the scene objects that the plan before this one did not meet where they are now.
+  /// Returns the scene objects that the last plan before this one did not meet where they are now;
+  /// none if there was no plan.
   [[nodiscard]] const std::vector<int>& changed() const { return changed_; }
 
   /// Removes a scene object: those after it are numbered one less from now on.
@@ -56,7 +66,7 @@ class ClearanceMemory {
   [[nodiscard]] const NodeFinding* node(int layer, int slot) const;
   /// Returns what is known about the edge from slot a of `layer` to slot b of the next layer; null
   /// if nothing is.
-  [[nodiscard]] const Finding* edge(int layer, int a, int b) const;
+  [[nodiscard]] const EdgeFinding* edge(int layer, int a, int b) const;
   /// Returns how much of a finding holds for the present plan.
   [[nodiscard]] Holds holds(const Finding& finding);
   /// Stores the answer about a node. `pair` is the pair that fails, or kNoPair; `slack` is
@@ -64,8 +74,9 @@ class ClearanceMemory {
   void note_node(const NodeQuestion& question, const NodeAnswer& answer, const BodyPair& pair,
                  double slack);
   /// Stores the answer about an edge. `pair` is the pair that fails, or kNoPair; `slack` is
-  /// Finding::slack.
-  void note_edge(const EdgeQuestion& question, bool valid, const BodyPair& pair, double slack);
+  /// Finding::slack, `rows` is EdgeFinding::rows.
+  void note_edge(const EdgeQuestion& question, bool valid, const BodyPair& pair, double slack,
+                 Rows rows);
 
   /// Returns all nodes and edges that fail, in the order in which they were found.
   [[nodiscard]] PriorFailures failures() const;
@@ -91,9 +102,6 @@ class ClearanceMemory {
       return static_cast<std::size_t>(key * 0x9e3779b97f4a7c15ull >> 16);
     }
   };
-  struct EdgeFinding : Finding {
-    Config qa, qb;
-  };
   static std::uint64_t key(int layer, int slot) {
     return static_cast<std::uint64_t>(layer) << 32 | static_cast<std::uint32_t>(slot);
   }
@@ -110,11 +118,11 @@ class ClearanceMemory {
   std::uint64_t unchanged_since_ = 0;
   std::vector<std::uint64_t> met_;
   std::vector<int> changed_;
-  // A run is a sequence of plans between which only the same objects changed. The first plan of the
-  // run, and where these objects stood in each:
-  std::uint64_t run_ = 0;
+  // A run is a sequence of plans between which only the same objects changed: the plans of the run,
+  // and where these objects stood in each.
+  std::vector<std::uint64_t> run_;
   std::vector<std::vector<Pose>> stood_;
-  // moved_since() by plan of the run; negative until it is computed
+  // moved_since() by plan of the run, in the order of run_; negative until it is computed
   std::vector<double> moved_since_;
   const World* world_ = nullptr;
   int robot_bodies_ = 0;
@@ -122,6 +130,7 @@ class ClearanceMemory {
   std::unordered_map<EdgeKey, EdgeFinding, EdgeHash> edges_;
   std::vector<std::pair<std::uint64_t, NodeFinding>> noted_nodes_;
   std::vector<std::pair<EdgeKey, EdgeFinding>> noted_edges_;
+  std::size_t rows_ = 0;                     // in edges_
   std::vector<std::uint64_t> failed_nodes_;  // each once, even if valid by now
   std::vector<EdgeKey> failed_edges_;
 };

@@ -229,6 +229,7 @@ void CollisionValidity::edges(std::span<const EdgeQuestion> questions,
         continue;
       }
       open.only_changed = holds == ClearanceMemory::Holds::kUnlessChanged;
+      open.rows = known->rows;
     }
     open_.push_back(open);
   }
@@ -239,7 +240,8 @@ void CollisionValidity::edges(std::span<const EdgeQuestion> questions,
   });
   if (memory_)
     for (const Open& open : open_)
-      memory_->note_edge(questions[open.index], answers[open.index] != 0, open.pair, open.slack);
+      memory_->note_edge(questions[open.index], answers[open.index] != 0, open.pair, open.slack,
+                         open.rows);
 }
 
 bool CollisionValidity::edge(const EdgeQuestion& x, Open& open, int worker, Queries& queries) {
@@ -270,20 +272,23 @@ bool CollisionValidity::edge_of_layers(const EdgeQuestion& x, const Config& qa, 
   World::Query& query = open.only_changed ? *queries.changed : queries.whole;
   const EdgeRule& rule = open.only_changed ? changed_rule_ : rule_;
   double slack = std::numeric_limits<double>::infinity(), slack_of_move = -1;
-  Lattice::InterpolatedEdge interpolated = lattice_->interpolate_edge(x.layer, x.a, qa, x.b, qb);
-  if (interpolated.fault != Lattice::InterpolatedEdge::Fault::kNone) return false;
-  for (const Config& q : interpolated.rows) {
+  if (!open.rows) {
+    auto interpolated = lattice_->interpolate_edge(x.layer, x.a, qa, x.b, qb);
+    if (interpolated.fault != Lattice::InterpolatedEdge::Fault::kNone) return false;
+    interpolated.rows.push_back(qb);
+    open.rows = std::make_shared<const std::vector<Config>>(std::move(interpolated.rows));
+  }
+  const std::span<const Config> rows(*open.rows);
+  for (const Config& q : rows.first(rows.size() - 1)) {
     if (const auto pair = query.find_violating_pair_incremental(q, ClearanceRule::kNode)) {
       open.pair = *pair;
       return false;
     }
     if (open.only_changed) slack = std::min(slack, query.slack(ClearanceRule::kNode));
   }
-  interpolated.rows.push_back(qb);
   Config from = qa;
-  for (std::size_t k = 0; edge_mode_ == EdgeMode::kContinuous && k < interpolated.rows.size();
-       ++k) {
-    const Config to = from + lattice_->delta(from, interpolated.rows[k]);
+  for (std::size_t k = 0; edge_mode_ == EdgeMode::kContinuous && k < rows.size(); ++k) {
+    const Config to = from + lattice_->delta(from, rows[k]);
     if (const auto pair = edge_blocked(query, rule, from, to, budget_,
                                        open.only_changed ? &slack_of_move : nullptr)) {
       open.pair = *pair;

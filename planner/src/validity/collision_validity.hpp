@@ -53,7 +53,8 @@ class CollisionValidity final : public Validity {
     bool only_changed = false;
     /// on entry the pair to test first; then the pair that fails
     BodyPair pair = ClearanceMemory::kNoPair;
-    double slack = -1;  ///< see ClearanceMemory::Finding
+    double slack = -1;           ///< see ClearanceMemory::Finding
+    ClearanceMemory::Rows rows;  ///< ClearanceMemory::EdgeFinding::rows, where they are known
   };
   [[nodiscard]] Queries make_queries() const;
   /// Calls ask(open, worker, queries) for each open question on the executor's threads; beside

@@ -152,12 +152,31 @@ void expect_same(const PlanResult& result, const PlanResult& other, const std::s
   ASSERT_EQ(diagnosis_of(result).cause, diagnosis_of(other).cause) << what;
 }
 
-/// A planner that plans again after bodies have moved, at one thread or two, answers as a fresh one
-/// does, halvings included.
+/// Moves, adds or removes a body, or asks for another clearance.
+void change_something(Planner& planner, int again, Random& random) {
+  const int kind = random.below(8);
+  if (kind == 0) {
+    SceneObject object = planner.problem().scene.front();
+    object.name = "again_" + std::to_string(again);
+    for (int k = 0; k < 3; ++k) object.pose.translation()[k] += random.uniform(-0.1, 0.1);
+    planner.add(object);
+  } else if (kind == 1 && planner.problem().scene.size() > 1) {
+    planner.remove(planner.problem().scene.front().name);
+  } else if (kind == 2) {
+    Task task = planner.problem();
+    task.limits.clearance = random.uniform(0, 0.02);
+    planner.set_task(task);
+  } else {
+    move_some_object(planner, random);
+  }
+}
+
+/// A planner that plans again after changes of bodies and clearances, at one thread or two, answers
+/// as a fresh one does, halvings included.
 TEST(Knots, PlansAgainAsAFreshPlannerDoes) {
   const std::uint64_t base = seed("Knots.Again");
   const auto robots = arms_of_one_turn();
-  const int count = trials(60);
+  const int count = trials(50);
   int plans = 0, halved = 0, solved = 0;
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
@@ -166,8 +185,8 @@ TEST(Knots, PlansAgainAsAFreshPlannerDoes) {
     put_in_the_way(problem, random);
     if (problem.scene.empty()) continue;
     Planner planner(problem);
-    for (int again = 0; again < 6; ++again) {
-      if (again > 0) move_some_object(planner, random);
+    for (int again = 0; again < 8; ++again) {
+      if (again > 0) change_something(planner, again, random);
       const PlannerKind kind = random.coin() ? PlannerKind::kLazy : PlannerKind::kParallel;
       const PlanResult result = planner.plan(with_all_evidence(kind));
       const PlanResult fresh = plan(planner.problem(), with_all_evidence(PlannerKind::kLazy));

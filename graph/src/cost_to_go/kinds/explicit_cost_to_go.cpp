@@ -166,7 +166,7 @@ void ExplicitCostToGo::find_stale(int layer, const std::vector<Change>& ahead,
   // Where few nodes are reached, these alone are looked at.
   const auto reached = static_cast<std::size_t>(std::count_if(
       values.begin(), values.end(), [](double value) { return value != kUnreachable; }));
-  const bool all = 2 * reached > values.size();
+  const bool all = lowers_ || 2 * reached > values.size();
   least_ = values;
   if (!all) {
     slots_.clear();

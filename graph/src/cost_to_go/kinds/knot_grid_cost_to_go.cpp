@@ -63,6 +63,13 @@ Config KnotGridCostToGo::config(int layer, int slot) {
       .config(inner / angles_, pad_ + inner % angles_);
 }
 
+bool KnotGridCostToGo::exists(int layer, int slot) {
+  if (lattice_->is_given(layer)) return lattice_->node(layer, slot).has_value();
+  const int inner = lattice_->inner(layer, slot);
+  return nodes(layer, lattice_->rank_of(layer, slot))
+      .valid(inner / angles_, pad_ + inner % angles_);
+}
+
 void KnotGridCostToGo::describe_row(const LayerNodes& theirs, const RelaxTask<double>& task,
                                     Around& around, int row) {
   const int length = angles_ + 2 * pad_, blocks = (length + kTile - 1) / kTile;
@@ -336,12 +343,13 @@ void KnotGridCostToGo::find_stale(int layer, const std::vector<Change>& ahead,
     each_near(
         layer, layer + 1, change.slot, layer,
         [&](int a) {
-          return values[static_cast<std::size_t>(a)] != kUnreachable &&
-                 values[static_cast<std::size_t>(a)] >= change.before;
+          const double value = values[static_cast<std::size_t>(a)];
+          if (value == kUnreachable) return lowers_ && exists(layer, a);
+          return value >= change.before;
         },
         [&](int a, const Config& from) {
           const double rest = lattice_->edge_cost(lattice_->delta(from, to)) + change.before;
-          if (values[static_cast<std::size_t>(a)] == (own ? rest + own[a] : rest))
+          if (values[static_cast<std::size_t>(a)] >= (own ? rest + own[a] : rest))
             stale.push_back(a);
         });
   }

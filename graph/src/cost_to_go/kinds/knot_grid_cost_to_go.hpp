@@ -24,6 +24,8 @@ class KnotGridCostToGo final : public LayerValues {
   void steps(int layer, int slot, double bound, std::vector<Step>& out) override;
 
  private:
+  /// Returns whether a slot has a node.
+  [[nodiscard]] bool exists(int layer, int slot);
   void begin(int layer, Values& out) override;
   void relax(int step, int layer, int other_layer, const Values& others, Values& out) override;
   [[nodiscard]] double relax_one(int layer, int slot) override;

@@ -2,6 +2,9 @@
 #include "cost_to_go/kinds/layer_values.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <map>
+#include <utility>
 
 #include "swivel/core/base/timeline.hpp"
 
@@ -16,6 +19,45 @@ bool gives(const std::vector<Verdicts::HalfEdge>& edges, const std::vector<doubl
   return std::any_of(edges.begin(), edges.end(), [&](const Verdicts::HalfEdge& edge) {
     return edge.cost + others[static_cast<std::size_t>(edge.other)] == value;
   });
+}
+
+/// What is removed in one of two plans alone.
+struct Differences {
+  std::size_t count = 0;
+  bool ended = false;                        // some removals of the plan before are not repeated
+  std::map<int, std::vector<int>> of_layer;  // slots of nodes, or of the tails of edges
+};
+int slot_of(int node) {
+  return node;
+}
+int slot_of(const std::pair<int, int>& edge) {
+  return edge.first;
+}
+
+template <class Removed>
+Differences differences(const std::map<int, std::vector<Removed>>& before,
+                        const std::map<int, std::vector<Removed>>& now) {
+  Differences found;
+  const auto compare = [&](int layer, const std::vector<Removed>& old,
+                           const std::vector<Removed>& fresh) {
+    std::vector<Removed> ended, begun;
+    std::set_difference(old.begin(), old.end(), fresh.begin(), fresh.end(),
+                        std::back_inserter(ended));
+    std::set_difference(fresh.begin(), fresh.end(), old.begin(), old.end(),
+                        std::back_inserter(begun));
+    found.count += ended.size() + begun.size();
+    found.ended |= !ended.empty();
+    for (const auto* some : {&ended, &begun})
+      for (const Removed& one : *some) found.of_layer[layer].push_back(slot_of(one));
+  };
+  const std::vector<Removed> none;
+  for (const auto& [layer, old] : before) {
+    const auto fresh = now.find(layer);
+    compare(layer, old, fresh == now.end() ? none : fresh->second);
+  }
+  for (const auto& [layer, fresh] : now)
+    if (!before.contains(layer)) compare(layer, none, fresh);
+  return found;
 }
 
 }  // namespace
@@ -40,6 +82,7 @@ void LayerValues::restore(const SavedValues& values) {
   before_ = saved.before;
   slack_ = first_slack(lattice());
   forward_.clear();
+  exact_ = true;
 }
 
 void LayerValues::leave_out_removed(int layer, Values& values) const {
@@ -159,6 +202,7 @@ void LayerValues::sweep_once() {
 }
 
 void LayerValues::compute(int goal_layer) {
+  exact_ = lowers_ = last_.known = false;
   verdicts_.pending.clear();
   limit_ = kUnreachable;
   if (goal_layer + 1 == lattice().layers()) {
@@ -176,6 +220,7 @@ void LayerValues::compute(int goal_layer) {
   }
   if (reached) sweep_once();
   while (by_coarser_ && beyond_limit() && set_limit_by_bounds()) sweep_once();
+  exact_ = true;
 }
 
 void LayerValues::renew_layer(int layer, std::vector<Change>& changed) {
@@ -183,7 +228,12 @@ void LayerValues::renew_layer(int layer, std::vector<Change>& changed) {
   const Values before = values;
   solve_within_limit(layer, values);
   for (std::size_t slot = 0; slot < values.size(); ++slot)
-    if (values[slot] != before[slot]) changed.push_back({static_cast<int>(slot), before[slot]});
+    note_change(static_cast<int>(slot), before[slot], values[slot], changed);
+}
+
+void LayerValues::note_change(int slot, double before, double now,
+                              std::vector<Change>& changed) const {
+  if (before != now) changed.push_back({slot, lowers_ ? std::min(before, now) : before});
 }
 
 void LayerValues::relax_some(int layer, const std::vector<int>& slots, Values& out) {
@@ -197,7 +247,9 @@ void LayerValues::relax_some(int layer, const std::vector<int>& slots, Values& o
 void LayerValues::renew_nodes(int layer, std::vector<int>& stale, std::vector<Change>& changed) {
   Values& values = value_[static_cast<std::size_t>(layer)];
   const double* own = verdicts_.costs(layer);
-  std::erase_if(stale, [&](int a) { return values[static_cast<std::size_t>(a)] == kUnreachable; });
+  std::erase_if(stale, [&](int a) {
+    return values[static_cast<std::size_t>(a)] == kUnreachable && (!lowers_ || removed(layer, a));
+  });
   if (stale.empty()) return;
   if (layer == goal_)
     fresh_.assign(stale.size(), 0.0);
@@ -208,14 +260,36 @@ void LayerValues::renew_nodes(int layer, std::vector<int>& stale, std::vector<Ch
     double& value = values[static_cast<std::size_t>(slot)];
     double fresh = removed(layer, slot) ? kUnreachable : fresh_[k];
     if (own) fresh += own[slot];
-    if (fresh == value) continue;
-    changed.push_back({slot, value});
+    note_change(slot, value, fresh, changed);
     value = fresh;
   }
 }
 
+void LayerValues::keep_removals() {
+  last_.known = exact_ && !bounded_ && !by_coarser_ && goal_ + 1 == lattice().layers() &&
+                verdicts_.removed() > 0 && verdicts_.pending.empty() && !verdicts_.costs_changed();
+  if (!last_.known) return;
+  last_.removals = verdicts_.removals();
+  last_.value.swap(value_);
+}
+
+void LayerValues::take_last_values() {
+  if (!std::exchange(last_.known, false) || verdicts_.costs_changed()) return;
+  const Verdicts::Removals now = verdicts_.removals();
+  const Differences nodes = differences(last_.removals.nodes, now.nodes),
+                    edges = differences(last_.removals.edges, now.edges);
+  if (2 * (nodes.count + edges.count) > static_cast<std::size_t>(verdicts_.removed())) return;
+  value_.swap(last_.value);
+  lowers_ = nodes.ended || edges.ended;
+  verdicts_.pending.clear();
+  for (const auto& [layer, slots] : nodes.of_layer) verdicts_.pending[layer].nodes = slots;
+  for (const auto& [layer, slots] : edges.of_layer) verdicts_.pending[layer].tails = slots;
+}
+
 void LayerValues::compute_removals() {
   const TraceSpan span("repair");
+  exact_ = false;
+  take_last_values();
   std::vector<Change> changed, ahead;  // in this layer, in the next one to repair
   std::vector<int> stale;
   for (int layer = goal_; layer >= 0 && (!ahead.empty() || !verdicts_.pending.empty()); --layer) {
@@ -247,6 +321,8 @@ void LayerValues::compute_removals() {
     for (Values& values : value_) std::fill(values.begin(), values.end(), kUnreachable);
     limit_ = kUnreachable;
   }
+  lowers_ = false;
+  exact_ = true;
 }
 
 double LayerValues::best() const {

@@ -18,8 +18,10 @@ namespace swivel {
 ///
 /// With Pruning::kByBound and a given start, it first goes forward from there, and leaves out nodes
 /// that lie on no path of cost `limit` or less. Should removals make the best path cost more, the
-/// limit is raised, and the sweep repeated. Where a lattice was made by halving steps of another
-/// one, forward values of that one take the place of the way forward (bound_by_coarser()).
+/// limit is raised, and the sweep repeated. A plan that begins again (restart()) and removes nearly
+/// what the one before did repairs the values of that one instead. Where a lattice was made by
+/// halving steps of another one, forward values of that one take the place of the way forward
+/// (bound_by_coarser()).
 class LayerValues : public CostToGo {
  public:
   [[nodiscard]] double at(int layer, int slot) const override {
@@ -48,7 +50,7 @@ class LayerValues : public CostToGo {
   /// Replaces `out`, for each of some nodes, by the least of edge cost plus at() over the next
   /// layer, over what is not removed; `layer` is not the goal.
   virtual void relax_some(int layer, const std::vector<int>& slots, Values& out);
-  /// A node whose value has changed, and the value before.
+  /// A node whose value has changed, and the value before (but see lowers_).
   struct Change {
     int slot;
     double before;
@@ -79,10 +81,17 @@ class LayerValues : public CostToGo {
   [[nodiscard]] bool lost_best_edge(int layer, int slot, double value) const;
 
   std::vector<Values> value_;  // [layer]
+  /// Whether a repair may lower values, because some removals of the plan before are not repeated.
+  /// Then Change::before is the least of the values before and after.
+  bool lowers_ = false;
 
  private:
   void compute(int goal_layer) final;
   void compute_removals() final;
+  void keep_removals() final;
+  /// If what is to be removed differs in little from what was removed before restart(), takes the
+  /// values of then, and leaves only the differences pending.
+  void take_last_values();
   /// Computes the values of a layer from those of the next where nodes may lie on a path within the
   /// limit, over what is not removed.
   void solve_within_limit(int layer, Values& out);
@@ -104,6 +113,8 @@ class LayerValues : public CostToGo {
   }
   /// Solves a layer as a whole. Appends the nodes whose values change to `changed`.
   void renew_layer(int layer, std::vector<Change>& changed);
+  /// Appends a node to `changed` if its value is another than it was.
+  void note_change(int slot, double before, double now, std::vector<Change>& changed) const;
   /// Computes the values of the nodes `stale` of a layer again. Appends those whose values change
   /// to `changed`.
   void renew_nodes(int layer, std::vector<int>& stale, std::vector<Change>& changed);
@@ -126,7 +137,15 @@ class LayerValues : public CostToGo {
   /// What go_forward() found, if it was called; by bound_by_coarser() the limit is theirs.
   std::vector<Values> forward_;
   bool by_coarser_ = false;
-  double expected_ = 0;      // what the best path to the last layer is likely to cost, at least
+  double expected_ = 0;  // what the best path to the last layer is likely to cost, at least
+  /// The values before restart(), and what was removed then.
+  struct Last {
+    bool known = false;
+    std::vector<Values> value;
+    Verdicts::Removals removals;
+  };
+  Last last_;
+  bool exact_ = false;       // value_ is that of the goal and all removals
   std::vector<int> within_;  // slots, scratch
   Values fresh_;             // what renew_nodes() computes
 

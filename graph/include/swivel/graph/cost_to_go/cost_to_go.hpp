@@ -119,6 +119,9 @@ class CostToGo {
   CostToGo(const Lattice& lattice, const Budget& budget) : budget_(budget), verdicts_(lattice) {}
   virtual void compute(int goal_layer) = 0;
   virtual void compute_removals() = 0;
+  /// Keeps the present values and removals, which restart() is about to forget: the next plan's
+  /// removals are often nearly the same. By default keeps nothing.
+  virtual void keep_removals() {}
   /// Returns a copy of the present values, which restore() brings back.
   [[nodiscard]] virtual std::shared_ptr<const SavedValues> save() const = 0;
   virtual void restore(const SavedValues& saved) = 0;

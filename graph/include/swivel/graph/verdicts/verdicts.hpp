@@ -4,6 +4,7 @@
 #include <map>
 #include <span>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "swivel/core/base/zeroed_array.hpp"
@@ -56,6 +57,13 @@ class Verdicts {
   /// Returns the number of nodes and edges removed so far.
   [[nodiscard]] std::int64_t removed() const { return removed_; }
 
+  /// The nodes and edges that are removed, by layer and in the order of slots.
+  struct Removals {
+    std::map<int, std::vector<int>> nodes;                  ///< slots
+    std::map<int, std::vector<std::pair<int, int>>> edges;  ///< slots of tail and head
+  };
+  [[nodiscard]] Removals removals() const;
+
   /// Returns what a node costs besides the edges to and from it: by the lattice alone
   /// (Lattice::node_cost()) until the Validity has said more; exit costs included.
   [[nodiscard]] double cost(int layer, int slot) const {
@@ -72,6 +80,8 @@ class Verdicts {
   [[nodiscard]] bool knows_cost(int layer, int slot) const {
     return !cost_known_.empty() && cost_known_[index(layer, slot)] != 0;
   }
+  /// Returns whether set_cost() or raise_exit_costs() was called since the last clear().
+  [[nodiscard]] bool costs_changed() const { return costs_changed_; }
   /// Sets what a node costs, at most once for each node. It must not be less than by the lattice
   /// alone.
   void set_cost(int layer, int slot, double cost);
@@ -149,6 +159,7 @@ class Verdicts {
   std::unordered_map<EdgeKey, Verdict, EdgeHash> edge_;
   std::map<int, RemovedEdges> removed_edges_;  // by layer of the tail
   std::int64_t removed_ = 0;
+  bool costs_changed_ = false;
 };
 
 }  // namespace swivel
