@@ -156,7 +156,7 @@ class Stubs:
         """Returns the signatures of a function, from the bracket on."""
         if self.has(SIGNATURES, self.where):
             return SIGNATURES[self.where]
-        if inspect.isfunction(function):
+        if inspect.isfunction(function) and not hasattr(function, "__wrapped__"):
             return [str(inspect.signature(function))]
         doc = function.__doc__ or ""
         start = r"^\d+\. \w+" if "Overloaded function." in doc else r"\A\w*"

@@ -43,9 +43,9 @@ struct Planned {
 struct Plans {
   using Row = EpisodeRow;
   static constexpr const char* kSaving =
-      "As .npz of numpy where the name ends so: arrays number, status (text), cost, failed_s, "
-      "cause, reason, joints and offsets. Else as CSV without the joints, docs/formats.md, "
-      "\"Campaign\".";
+      "As .npz of numpy or as .csv, by the ending of the name. .npz: arrays number, status (text), "
+      "cost, failed_s, cause, reason, joints and offsets. .csv: without the joints, "
+      "docs/formats.md, \"Campaign\". Raises InputError for other endings.";
 
   std::shared_ptr<const std::vector<EpisodeRow>> rows;  ///< shared with arrays, as the next two
   /// All rows of all trajectories, one after the other; rad.
@@ -501,7 +501,13 @@ class ManyPlanner {
 }  // namespace
 
 void Plans::save(const std::filesystem::path& file) const {
-  io::write_file(file, file.extension() == ".npz" ? to_npz(*this) : to_csv());
+  std::string ending = file.extension().string();
+  for (char& letter : ending)
+    if (letter >= 'A' && letter <= 'Z') letter += 'a' - 'A';
+  if (ending != ".npz" && ending != ".csv")
+    throw InputError("file: '" + file.string() +
+                     "': unknown format: allowed are names that end in .npz or .csv");
+  io::write_file(file, ending == ".npz" ? to_npz(*this) : to_csv());
 }
 
 Plans Plans::joined(const std::vector<Plans>& parts) {

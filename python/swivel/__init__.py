@@ -19,6 +19,7 @@ time(), place(), campaign(), plan_many(), report() and certificate() take every 
 """
 from __future__ import annotations as _annotations
 
+import functools as _functools
 import os as _os
 
 import numpy as _np
@@ -28,6 +29,7 @@ from ._swivel import *  # noqa: F401,F403
 from ._swivel import __version__  # noqa: F401
 from . import drawings as _drawings
 from . import rows as _rows
+from .arguments import require as _require
 from .drawings import (  # noqa: F401
     certificate,
     check_certificate,
@@ -104,6 +106,21 @@ def _set_word(self, name, value):
 
 
 Problem.__getattribute__, Problem.__setattr__ = _get_word, _set_word  # noqa: F405
+
+
+def _requiring(method):
+    """Returns a method of the module that refuses keywords of a wrong type by their names."""
+
+    @_functools.wraps(method)
+    def required(self, *values, **keywords):
+        _require(**keywords)
+        return method(self, *values, **keywords)
+
+    return required
+
+
+for _name in ("plan", "clearance", "refine", "time", "advise"):
+    setattr(Planner, _name, _requiring(getattr(Planner, _name)))  # noqa: F405
 _drawings.extend()
 # A planner is its problem: what it remembers of earlier plans only saves time.
 Planner.__reduce__ = lambda planner: (Planner, (planner.problem,))  # noqa: F405
@@ -181,6 +198,8 @@ def plan(
     problem = _loaded(problem)
     own = dict(check=check, check_motions=check_motions, cost=cost)
     _refuse(problem, ("one path", "strokes"), **own)
+    _require(threads=threads, timeout=timeout, prove=prove, evidence=evidence, refine=refine)
+    _require(progress=progress, speed=speed, turn_speed=turn_speed, rate=rate, chord=chord, **own)
     return _swivel._plan(
         problem, planner, threads, timeout, prove, evidence, *own.values(), progress, refine,
         speed, turn_speed, rate, chord
@@ -201,6 +220,7 @@ def check(
     """
     problem = _loaded(problem)
     _refuse(problem, ("strokes",), speed=speed)
+    _require(rows=rows, speed=speed)
     return _swivel._check(problem, rows, speed)
 
 
@@ -257,6 +277,8 @@ def time(
     Returns a Motion. Raises InputError, InvalidArgument and TimeoutError.
     """
     problem = _loaded(problem)
+    _require(rows=rows, speed=speed, turn_speed=turn_speed, chord=chord)
+    _require(rate=rate, refine=refine, timeout=timeout)
     return _swivel._time(problem, rows, speed, turn_speed, rate, chord, refine, timeout)
 
 
@@ -268,7 +290,9 @@ def advise(problem: Problem | _File, plan: Answer, *, timeout: float = 1.0) -> A
 
     Returns an AdviceList.
     """
-    return _swivel._advise(_loaded(problem), plan, timeout)
+    problem = _loaded(problem)
+    _require(timeout=timeout)
+    return _swivel._advise(problem, plan, timeout)
 
 
 def compute_cartesian_path(

@@ -5,7 +5,6 @@ They are made here or on workers of a Dask cluster.
 """
 from __future__ import annotations
 
-import collections.abc
 import contextlib
 import functools
 import operator
@@ -15,6 +14,7 @@ import time
 from itertools import islice
 
 from . import _swivel
+from .arguments import JOINTS, POSES, numbers_of, paths_of, require
 
 
 def place(
@@ -73,6 +73,9 @@ def place(
     so far.
     """
     problem = _loaded(problem)
+    require(object=object, path=path, base=base, arm=arm, x=x, y=y, z=z, roll=roll, pitch=pitch)
+    require(yaw=yaw, hold=hold, sample=sample, seed=seed, refine_grid=refine_grid, best=best)
+    require(threads=threads, timeout=timeout, prove=prove, progress=progress, client=client)
     moves = [x, y, z, roll, pitch, yaw]
     hold = {} if hold is None else dict(hold)
     cells = _swivel._Cells(moves, hold, sample, seed)
@@ -95,6 +98,7 @@ def place(
         prove,
     )
     make()  # says what is wrong before anything is sent
+    deadline = _deadline(time.monotonic(), timeout, client)
 
     def wanted():
         if refinement is None:
@@ -105,7 +109,6 @@ def place(
 
     total = 0
     parts = []
-    deadline = None if timeout is None else time.monotonic() + timeout
 
     def arrived(placements):
         parts.append(placements)
@@ -152,10 +155,13 @@ def campaign(
     number of threads and workers. Raises InvalidArgument, InputError and TypeError; Ctrl-C raises
     KeyboardInterrupt, whose attribute `rows` is the Episodes known so far.
     """
+    problem = _loaded(problem)
+    require(episodes=episodes, seed=seed, threads=threads, prove=prove)
+    require(progress=progress, client=client)
     here = client is None
     make = functools.partial(
         _swivel._Campaigner,
-        _loaded(problem),
+        problem,
         episodes,
         seed,
         planner,
@@ -228,14 +234,19 @@ def plan_many(
     """
     begin = time.monotonic()
     problem = _loaded(problem)
-    if not (poses is None or isinstance(poses, collections.abc.Mapping)):
-        raise TypeError(
-            f"poses: {type(poses).__name__}: allowed is a mapping of names of scene objects"
+    require(poses=poses, threads=threads, timeout=timeout, timeout_each=timeout_each, prove=prove)
+    require(explain=explain, progress=progress, client=client)
+    arrays = (
+        None if given is None else numbers_of(name, given, allowed)
+        for name, given, allowed in (
+            ("bases", bases, POSES), ("starts", starts, JOINTS), ("ends", ends, JOINTS)
         )
-    if not (progress is None or callable(progress)):
-        raise TypeError("progress: not callable: allowed is a function, or None")
+    )
     varied = _swivel._Varied(
-        problem, paths, {} if poses is None else dict(poses), bases, starts, ends
+        problem,
+        None if paths is None else paths_of(paths),
+        {name: numbers_of(f"poses: '{name}'", given) for name, given in dict(poses or {}).items()},
+        *arrays,
     )
     if shard is not None:
         index, count = _share(shard)
@@ -244,7 +255,7 @@ def plan_many(
     make = functools.partial(_swivel._ManyPlanner, problem, planner)
     # Says what is wrong before anything is sent, and how many joints a row has.
     parts = [make(threads, timeout, timeout_each, prove, explain).nothing()]
-    deadline = None if timeout is None else begin + timeout
+    deadline = _deadline(begin, timeout, client)
     if here:
         make = functools.partial(make, threads, timeout, timeout_each, prove, explain)
     else:
@@ -268,6 +279,18 @@ def plan_many(
         )
         workers.plan(batches, arrived)
         return _swivel.Plans._joined(parts)
+
+
+def _deadline(begin, timeout, client):
+    """Returns when time is up, on the clock of time.monotonic(); None for never."""
+    if timeout is None:
+        return None
+    if client is not None and timeout > threading.TIMEOUT_MAX:
+        raise ValueError(
+            f"timeout: {float(timeout):g}: too long for a client: allowed are values above 0, at "
+            f"most {threading.TIMEOUT_MAX:.0f}, or None"
+        )
+    return begin + timeout
 
 
 def _share(shard):

@@ -443,7 +443,7 @@ class ManyRuns(Cases):
             none.save(file)
             with np.load(file) as saved:
                 self.assertEqual(saved["joints"].shape, (0, 7))
-            for name in ("plans.npz", "plans.csv"):
+            for name in ("plans.npz", "plans.csv", "plans.NPZ"):
                 with self.assertRaises(swivel.InputError):
                     self.plans.save(Path(folder) / "nowhere" / name)
         try:
@@ -452,6 +452,26 @@ class ManyRuns(Cases):
             self.skipTest(f"{error} (Debian: python3-pandas)")
         self.assertEqual(len(table), 21)
         np.testing.assert_array_equal(table.cost, self.plans.cost)
+
+    def test_the_ending_of_a_file_is_its_format(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.plans.save(Path(folder) / "plans.CSV")
+            self.assertEqual((Path(folder) / "plans.CSV").read_text(), self.plans.to_csv())
+            (Path(folder) / "plans.NPZ").write_text("of before")
+            for name in ("plans.NPZ", "new.Npz"):
+                self.plans.save(os.path.join(folder, name))
+                with np.load(Path(folder) / name) as saved:
+                    np.testing.assert_array_equal(saved["joints"], self.plans.joints)
+            self.assertEqual(
+                sorted(os.listdir(folder)), ["new.Npz", "plans.CSV", "plans.NPZ"]
+            )
+            for name in ("", "plans", "plans.txt", ".npz", "plans.npz.gz"):
+                file = name and os.path.join(folder, name)
+                with self.assertRaisesRegex(
+                    swivel.InputError, "^file: '.*': unknown format: allowed are .* .npz or .csv$"
+                ):
+                    self.plans.save(file)
+            self.assertEqual(len(os.listdir(folder)), 3)
 
     def test_workers_plan_what_was_pickled(self):
         # What a worker of a Dask cluster does with what it gets, without Dask.
@@ -496,8 +516,9 @@ class ManyErrors(unittest.TestCase):
             self.fail("something was planned")
 
         with self.subTest(words), self.assertRaisesRegex(kind, words) as caught:
-            swivel.plan_many(problem, progress=never, **keywords)
+            swivel.plan_many(problem, **{"progress": never, **keywords})
         self.assertNotIn("\n", str(caught.exception))
+        return caught.exception
 
     @staticmethod
     def spoilt(array, place, value):
@@ -546,7 +567,11 @@ class ManyErrors(unittest.TestCase):
         for words, given in (
             ("not a sequence", 3),
             ("0 rows", []),
-            (r"row 0: of shape \(7,\): allowed are \(n, 7\) and \(n, 4, 4\)", path),
+            (r"one path, of shape \(19, 7\): allowed are \(n, m, 7\), .*; \[path\]", path),
+            (r"one path, of shape \(19, 7\)", path.tolist()),
+            (r"one path, of shape \(3, 4, 4\)", np.tile(np.eye(4), (3, 1, 1))),
+            (r"row 1: of shape \(7,\): allowed are \(n, 7\) and \(n, 4, 4\)", [path, path[0]]),
+            ("row 0: not an array of numbers but of object", [None]),
             (r"row 1: of shape \(19, 9\)", [path, np.hstack([path, path[:, :2]])]),
             (r"row 1: 1 waypoint\(s\): allowed are at least two", [path, path[:1]]),
             ("row 1: waypoint 5: not finite", self.spoilt(paths, (1, 5, 0), np.nan)),
@@ -556,6 +581,38 @@ class ManyErrors(unittest.TestCase):
             refused(f"^paths: {words}", paths=given)
         self.assertEqual(len(path), 19)
         refused("^starts: 3 rows, but paths has 2", paths=paths, starts=np.zeros((3, 7)))
+
+    def test_arrays_of_other_things_than_numbers(self):
+        class Failing:
+            def __array__(self, dtype=None, copy=None):
+                raise RuntimeError("own failure")
+
+        problem = load("experiment_c")
+        refused = functools.partial(self.refused, problem=problem, kind=swivel.InvalidArgument)
+        path = problem.waypoints
+        for argument, good in (
+            ("paths", np.array([path, path])), ("poses: 'door'", path), ("bases", path),
+            ("starts", np.zeros((2, 7))), ("ends", np.zeros((2, 7)))
+        ):
+            mask = np.zeros(good.shape, bool)
+            mask[1] = True
+            masked = np.ma.masked_array(good, mask)
+            for words, given in (
+                ("(row 1: )?has masked numbers: allowed are .*, none of them masked", masked),
+                ("(row 1: )?has masked numbers", list(masked)),
+                ("not an array of numbers but of complex128: allowed are", good + 0j),
+                ("(row 0: )?not an array of numbers but of complex128", (good + 0j).tolist()),
+                ("not an array of numbers but of object: allowed are", good.astype(object)),
+                ("not an array of numbers but of str", good.astype(str)),
+                ("not an array of numbers: allowed are", Failing()),
+                ("(row 0: )?not an array of numbers: allowed are", [Failing(), Failing()]),
+            ):
+                name, *of = argument.split(": ")
+                error = refused(f"^{argument}: {words}", **{name: {"door": given} if of else given})
+                if words.endswith("numbers: allowed are"):
+                    self.assertEqual(repr(error.__cause__), "RuntimeError('own failure')")
+        whole = np.ma.masked_array(path)  # nothing is masked
+        self.assertEqual(len(swivel.plan_many(problem, paths=[whole], explain=False)), 1)
 
     def test_starts_and_ends(self):
         problem = load("experiment_c")
@@ -616,10 +673,124 @@ class ManyErrors(unittest.TestCase):
             ("^poses: str: allowed is a mapping", {"poses": "door"}),
             ("^progress: not callable", {"progress": 3, **good}),
         ):
-            with self.assertRaisesRegex(TypeError, words):
-                swivel.plan_many(problem, **keywords)
+            self.refused(words, problem, kind=TypeError, **keywords)
         with self.assertRaisesRegex(TypeError, "unexpected keyword argument 'pose'"):
             swivel.plan_many(problem, pose={})
+
+    def test_types_of_keywords(self):
+        problem = load("experiment_c")
+        good = {"poses": {"door": doors(problem, 2)}}
+        whole = "not a whole number: allowed are 0 .all cores. to 1024$"
+        for words, keywords in (
+            (f"^threads: 2.0: {whole}", {"threads": 2.0}),
+            (f"^threads: '2': {whole}", {"threads": "2"}),
+            (f"^threads: None: {whole}", {"threads": None}),
+            (f"^threads: ndarray: {whole}", {"threads": np.zeros((9, 9))}),
+            ("^prove: 'no': neither True nor False: allowed are True and False$", {"prove": "no"}),
+            ("^prove: None: neither", {"prove": None}),
+            ("^explain: 2: neither", {"explain": 2}),
+            ("^timeout: '1': not a number: allowed are values above 0, or None$", {"timeout": "1"}),
+            ("^timeout: .1.: not a number", {"timeout": [1]}),
+            ("^timeout_each: 1j: not a number", {"timeout_each": 1j}),
+            ("^client: int: allowed is a dask.distributed.Client, or None$", {"client": 3}),
+        ):
+            self.refused(words, problem, kind=TypeError, **good, **keywords)
+        self.refused("^threads: 1099511627776: allowed are 0", problem, **good, threads=2**40)
+        row = {"starts": swivel.plan(problem).joints[:1]}
+        swivel.plan_many(problem, **row, threads=np.int64(1), timeout=np.float32(9), prove=1)
+        swivel.plan_many(problem, **row, timeout=float("inf"), explain=np.bool_(False))
+
+    def test_a_client_has_a_longest_timeout(self):
+        class Client:
+            def submit(self, *_, **__):
+                raise AssertionError("something was sent")
+
+            cancel = nthreads = submit
+
+        problem = load("experiment_c")
+        words = "^timeout: (inf|1e.10): too long for a client: allowed are values above 0, at most"
+        for timeout in (float("inf"), 1e10):
+            self.refused(words, problem, poses={"door": doors(problem, 2)}, client=Client(),
+                         timeout=timeout)
+        with self.assertRaisesRegex(ValueError, "^timeout: inf: too long for a client"):
+            swivel.place(problem, object="door", x=0, client=Client(), timeout=float("inf"))
+
+
+class OtherErrors(unittest.TestCase):
+    """The other functions name wrongly typed arguments as plan_many() does."""
+
+    def refused(self, cases, function, *values):
+        for words, keywords in cases:
+            with self.subTest(words), self.assertRaisesRegex(TypeError, words) as caught:
+                function(*values, **keywords)
+            self.assertNotIn("\n", str(caught.exception))
+
+    def test_plan(self):
+        problem = load("experiment_c")
+        cases = (
+            ("^threads: 2.0: not a whole number: allowed are 0", {"threads": 2.0}),
+            ("^timeout: '1': not a number", {"timeout": "1"}),
+            ("^prove: 'no': neither True nor False", {"prove": "no"}),
+            ("^evidence: 'no': neither", {"evidence": "no"}),
+            ("^refine: 3: neither", {"refine": 3}),
+            ("^speed: '1': not a number: allowed are values above 0, m/s, or None", {"speed": "1"}),
+            ("^turn_speed: .*rad/s", {"turn_speed": "1"}),
+            ("^rate: '9': not a number", {"rate": "9"}),
+            ("^chord: '1': not a number", {"chord": "1"}),
+            ("^check: not callable", {"check": 3}),
+        )
+        self.refused(cases, swivel.plan, problem)
+        self.refused(cases, swivel.Planner(problem).plan)
+
+    def test_check_and_time(self):
+        job = load("door_job", swivel.Resolution(ds=0.02, dphi=0.1))
+        for rows in (3, None, [3], np.zeros((3, 7))):
+            words = f"^rows: {type(rows).__name__}: allowed are an Answer, .*, or a file"
+            for function in (swivel.check, swivel.time):
+                self.refused([(words, {})], function, job, rows)
+        self.refused([("^speed: '1': not a number", {"speed": "1"})], swivel.check, job, [])
+
+    def test_campaign(self):
+        self.refused(
+            (
+                ("^episodes: 2.0: not a whole number: allowed are 1", {"episodes": 2.0}),
+                ("^seed: 1.5: not a whole number", {"seed": 1.5}),
+                ("^threads: 2.0: not a whole number", {"threads": 2.0}),
+                ("^prove: 'no': neither", {"prove": "no"}),
+                ("^progress: not callable", {"progress": 3}),
+                ("^client: int", {"client": 3}),
+            ),
+            swivel.campaign, load("experiment_c"),
+        )
+        for keywords in ({"episodes": -1}, {"seed": -1}, {"seed": 2**64}):
+            with self.assertRaisesRegex(swivel.InvalidArgument, "^[a-z]+: -?[0-9]+: allowed are"):
+                swivel.campaign(load("experiment_c"), **keywords)
+
+    def test_place(self):
+        problem = load("experiment_c")
+        place = functools.partial(swivel.place, problem)
+        self.refused(
+            (
+                ("^object: 3: allowed is a name", {"object": 3, "x": 0}),
+                ("^path: 'no': neither", {"path": "no", "x": 0}),
+                ("^base: 'no': neither", {"base": "no", "x": 0}),
+                ("^arm: 3: allowed is a name", {"path": True, "arm": 3, "x": 0}),
+                ("^x: 'a': allowed is a number, .from, to, step.", {"base": True, "x": "a"}),
+                ("^yaw: .1, 2, 3, 4.: allowed", {"base": True, "yaw": (1, 2, 3, 4)}),
+                ("^hold: 3: allowed is a mapping", {"hold": 3}),
+                ("^hold: .*: allowed is a mapping", {"hold": {"torso": "up"}}),
+                ("^hold: .*: allowed is a mapping", {"hold": {3: 1}}),
+                ("^sample: 2.0: not a whole number", {"base": True, "x": (0, 1), "sample": 2.0}),
+                ("^refine_grid: 'no': neither", {"base": True, "x": 0, "refine_grid": "no"}),
+                ("^best: 3: allowed are clearance", {"base": True, "x": 0, "best": 3}),
+                ("^timeout: '1': not a number", {"base": True, "x": 0, "timeout": "1"}),
+                ("^progress: not callable", {"base": True, "x": 0, "progress": 3}),
+                ("^client: int", {"base": True, "x": 0, "client": 3}),
+            ),
+            place,
+        )
+        some = place(object="door", x=np.array([0, 0.01, 0.01]), yaw=np.float64(0))
+        self.assertEqual(len(some), 2)
 
 
 if __name__ == "__main__":
