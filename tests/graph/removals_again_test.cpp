@@ -92,7 +92,9 @@ void begin_again(const Lattice& lattice, Random& random, const std::string& what
   Removals removals;
   add_some(lattice, 10 + random.below(40), random, removals);
   for (int round = 0; round < 5; ++round) {
-    if (round > 0) ASSERT_TRUE(values->restart({})) << what;
+    if (round > 0) {
+      ASSERT_TRUE(values->restart({})) << what;
+    }
     remove_all(removals, *values);
     const std::int64_t before = values->edges();
     values->repair();
