@@ -73,7 +73,7 @@ function(swivel_precompile target)
 endfunction()
 
 # swivel_precompiled_as(TARGET OTHER): uses the headers that were compiled for the target OTHER,
-# whose compile options must be the same.
+# whose compile options must be the same; TARGET may have macros that OTHER lacks, not the reverse.
 function(swivel_precompiled_as target other)
   if(SWIVEL_PRECOMPILE)
     target_precompile_headers(${target} REUSE_FROM ${other})
@@ -98,11 +98,13 @@ function(swivel_compile_rooms_at_once target)
 endfunction()
 
 # swivel_component(NAME SOURCES a.cpp ... PUBLIC dep ... PRIVATE dep ... PRECOMPILE <header> ...
-# PKG_CONFIG -lflag ...): one library, one include root, one layer, installed with those of its
-# headers that SWIVEL_PUBLIC_HEADERS names. PRECOMPILE: headers to compile once. PKG_CONFIG: what a
-# program must link where the library is static. Without SOURCES it is headers alone, under HEADERS.
+# PRECOMPILED_AS other PKG_CONFIG -lflag ...): one library, one include root, one layer, installed
+# with those of its headers that SWIVEL_PUBLIC_HEADERS names. PRECOMPILE: headers to compile once;
+# PRECOMPILED_AS: those of another component instead. PKG_CONFIG: what a program must link where the
+# library is static. Without SOURCES it is headers alone, under HEADERS.
 function(swivel_component name)
-  cmake_parse_arguments(arg "" "HEADERS" "SOURCES;PUBLIC;PRIVATE;PRECOMPILE;PKG_CONFIG" ${ARGN})
+  cmake_parse_arguments(
+    arg "" "HEADERS;PRECOMPILED_AS" "SOURCES;PUBLIC;PRIVATE;PRECOMPILE;PKG_CONFIG" ${ARGN})
   set(library swivel_${name})
   if(NOT arg_HEADERS)
     set(arg_HEADERS include)
@@ -111,6 +113,9 @@ function(swivel_component name)
     set(scope PUBLIC)
     add_library(${library} ${arg_SOURCES})
     swivel_precompile(${library} ${arg_PRECOMPILE})
+    if(arg_PRECOMPILED_AS)
+      swivel_precompiled_as(${library} swivel_${arg_PRECOMPILED_AS})
+    endif()
     swivel_compile_rooms_at_once(${library} ${arg_SOURCES})
     # Headers of its own: "room/name.hpp".
     target_include_directories(${library} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
