@@ -298,6 +298,7 @@ class Workcells(WithWorkcells):
             changed(1, trajectory="x.csv"), "arms[1].path: is given for an arm whose motion"
         )
         self.refused(changed(1, axes={}), "axes")
+        self.refused(changed(1, wait=True), "robot.hold")
         self.refused(changed(1, tip_link="arm_left_link_7_t"), "moves with both arms")
         body = {"name": "tool", "sphere": 0.02, "xyz": [0, 0, 0.05]}
         self.refused(changed(0, attached=[{**body, "allow": ["nobody"]}]), "unknown body 'nobody'")

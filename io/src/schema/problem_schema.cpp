@@ -429,7 +429,12 @@ Schema arms() {
   Schema arm = section(
       "arm", keys,
       {{{"path", "trajectory"}, true}, {{"at_rows", "trajectory"}}, {{"start", "trajectory"}}});
-  return refusing(list(std::move(arm), 2), {not_yet("axes"), not_yet("cost")});
+  arm = refusing(std::move(arm),
+                 {not_yet("axes"),
+                  not_yet("cost"),
+                  {"wait", "is of an arm whose joints are held",
+                   "a file of the other arm alone, with the joints of this one in `robot.hold`"}});
+  return list(std::move(arm), 2);
 }
 
 /// Returns the keys that only jobs have.
