@@ -232,7 +232,12 @@ class Twins(unittest.TestCase):
                 self.assertIn(stages[kind], spans)
                 full = run(*command, "--full-map")
                 self.assertNotIn("not looked at", full.stdout)
-                self.assertNotEqual(full.stdout, done.stdout)
+                if has_plan:
+                    without_times = [
+                        "".join(line for line in one.stdout.splitlines(True) if " ms" not in line)
+                        for one in (full, done)
+                    ]
+                    self.assertNotEqual(*without_times)
 
     def test_outputs_of_kinds_that_time_or_a_signal_ends(self):
         ends = {"time-out": ("--timeout", "0.3"), "Ctrl-C": ()}
