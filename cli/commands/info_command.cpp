@@ -181,7 +181,9 @@ void print_other(const Chain& chain, const ArmClass& arm) {
       meet(chain, 0) ? "a spherical" : "no spherical", wrist ? "a spherical" : "no spherical");
   if (!chain.roll) say("not S-R-S  %s\n", arm.not_srs.c_str());
   if (chain.roll)
-    say("roll       a path must leave the tool free to turn about its own axis: path.roll\n");
+    say("roll       path.roll: free lets the tool turn about its own axis; without, six joints "
+        "have "
+        "nothing to spare\n");
 }
 
 /// Returns the joints that move on their own and are neither the arm's nor between base and tip,
@@ -240,7 +242,7 @@ void print_more_axes(const RobotModel& robot, const ArmGuess& chosen, const Chai
     const auto print_where_first = [&](const char* what, const std::string& base) {
       try {
         const ArmModel with_it = build_arm(robot, base, chosen.tip, others, Pose::Identity());
-        if (with_it.chain.joint_names[0] != joint.name) return;
+        if (with_it.chain.roll || with_it.chain.joint_names[0] != joint.name) return;
         std::string hold;
         for (const HeldJoint& held : with_it.held)
           if (held.leader.empty())

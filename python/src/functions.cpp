@@ -67,7 +67,7 @@ Answer plan(const Problem& of, const PlanKeywords& keywords, bool refine,
             const MotionKeywords& motion) {
   const swivel::Problem problem = to_core(of);
   const MotionRequest asked{refine, motion.asked_timing(problem)};
-  PlanOptions options = keywords.options();
+  PlanOptions options = keywords.options(coordinates_of(problem));
   Answer answer = made_answer(interruptible([&](const std::stop_token& stop) {
                                 options.stop = stop;
                                 ProblemPlanner planner(problem, asked, Budget({}, nullptr, stop));
@@ -183,7 +183,9 @@ Loaded load_trajectory(const std::filesystem::path& file, const Problem& of,
   if (!joint_names.empty() && problem.arms.size() == 2)
     throw InvalidArgument("joint_names: of two arms: allowed with one");
   const std::vector<io::JointNames> names =
-      joint_names.empty() ? joint_names_of(problem) : std::vector{to_joint_names(joint_names)};
+      joint_names.empty()
+          ? joint_names_of(problem)
+          : std::vector{to_joint_names(joint_names, named_joints(joint_names_of(problem).front()))};
   return loaded(interruptible([&](const std::stop_token& stop) {
                   GivenAnswer given = io::load_answer(file, problem, names);
                   const bool whole =
@@ -202,7 +204,8 @@ Loaded load_trajectory(const std::filesystem::path& file, const Problem& of,
 
 /// Returns the rows of a file that states all of them, of a problem of one path that is not known.
 Loaded load_stated(const std::filesystem::path& file, const std::vector<std::string>& joint_names) {
-  const io::JointNames names = to_joint_names(joint_names);
+  const io::JointNames names =
+      to_joint_names(joint_names, joint_names.size() + 1 == kDof ? kDof - 1 : kDof);
   GivenAnswer given{one_path(PathProblem()), {}};
   given = io::load_answer(file, given.problem, {names});
   const Stated& stated = given.arms.front().stated;

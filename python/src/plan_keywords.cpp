@@ -42,13 +42,14 @@ py::array_t<Number> answers_of(const py::object& answer, std::size_t count,
   return py::array_t<Number, py::array::c_style | py::array::forcecast>::ensure(array);
 }
 
-/// Returns a copy of states as an array, since a function may keep its argument.
+/// Returns a copy of states as an array of `width` columns, since a function may keep its argument.
 template <class Item>
-py::array_t<double> states_of(std::span<const Item> items, const Config& (*joints)(const Item&)) {
+py::array_t<double> states_of(std::span<const Item> items, std::size_t width,
+                              const Config& (*joints)(const Item&)) {
   py::array_t<double> states(
-      {static_cast<py::ssize_t>(items.size()), static_cast<py::ssize_t>(kDof)});
+      {static_cast<py::ssize_t>(items.size()), static_cast<py::ssize_t>(width)});
   double* out = states.mutable_data();
-  for (const Item& item : items) out = std::copy_n(joints(item).data(), kDof, out);
+  for (const Item& item : items) out = std::copy_n(joints(item).data(), width, out);
   return states;
 }
 const Config& itself(const Config& q) {
@@ -59,25 +60,25 @@ const Config& itself(const Config& q) {
 /// destroyed.
 class ArrayCheck : public StateCheck {
  public:
-  ArrayCheck(py::object check, py::object motions)
-      : check_(std::move(check)), motions_(std::move(motions)) {
+  ArrayCheck(py::object check, py::object motions, std::size_t joints)
+      : check_(std::move(check)), motions_(std::move(motions)), joints_(joints) {
     name_ = name_of(check_.is_none() ? motions_ : check_);
   }
   [[nodiscard]] std::string name() const override { return name_; }
   void states(std::span<const Config> states, std::span<bool> allowed) override {
     if (check_is_none()) return static_cast<void>(std::fill(allowed.begin(), allowed.end(), true));
     const py::gil_scoped_acquire gil;
-    const auto answer =
-        answers_of<bool>(check_(states_of(states, itself)), states.size(), "check '" + name_ + "'");
+    const auto answer = answers_of<bool>(check_(states_of(states, joints_, itself)), states.size(),
+                                         "check '" + name_ + "'");
     std::copy_n(answer.data(), allowed.size(), allowed.begin());
   }
   [[nodiscard]] bool checks_motions() const override { return motions_.ptr() != Py_None; }
   void motions(std::span<const Motion> motions, std::span<bool> allowed) override {
     const py::gil_scoped_acquire gil;
-    const auto from =
-        states_of<Motion>(motions, [](const Motion& m) -> const Config& { return m.from; });
+    const auto from = states_of<Motion>(motions, joints_,
+                                        [](const Motion& m) -> const Config& { return m.from; });
     const auto to =
-        states_of<Motion>(motions, [](const Motion& m) -> const Config& { return m.to; });
+        states_of<Motion>(motions, joints_, [](const Motion& m) -> const Config& { return m.to; });
     const auto answer =
         answers_of<bool>(motions_(from, to), motions.size(), "check_motions of '" + name_ + "'");
     std::copy_n(answer.data(), allowed.size(), allowed.begin());
@@ -86,22 +87,25 @@ class ArrayCheck : public StateCheck {
  private:
   [[nodiscard]] bool check_is_none() const { return check_.ptr() == Py_None; }
   py::object check_, motions_;
+  std::size_t joints_;
   std::string name_;
 };
 
 class ArrayCost : public StateCost {
  public:
-  explicit ArrayCost(py::object cost) : cost_(std::move(cost)), name_(name_of(cost_)) {}
+  ArrayCost(py::object cost, std::size_t joints)
+      : cost_(std::move(cost)), joints_(joints), name_(name_of(cost_)) {}
   [[nodiscard]] std::string name() const override { return name_; }
   void costs(std::span<const Config> states, std::span<double> costs) override {
     const py::gil_scoped_acquire gil;
-    const auto answer =
-        answers_of<double>(cost_(states_of(states, itself)), states.size(), "cost '" + name_ + "'");
+    const auto answer = answers_of<double>(cost_(states_of(states, joints_, itself)), states.size(),
+                                           "cost '" + name_ + "'");
     std::copy_n(answer.data(), costs.size(), costs.begin());
   }
 
  private:
   py::object cost_;
+  std::size_t joints_;
   std::string name_;
 };
 
@@ -145,15 +149,15 @@ std::optional<double> to_timeout(std::optional<double> timeout) {
   return timeout;
 }
 
-PlanOptions PlanKeywords::options() const {
+PlanOptions PlanKeywords::options(std::size_t joints) const {
   PlanOptions options = to_plan_options(planner, threads, timeout, prove);
   if (evidence) options.evidence = Evidence::all();
   require_function(check, "check");
   require_function(check_motions, "check_motions");
   require_function(cost, "cost");
   if (!check.is_none() || !check_motions.is_none())
-    options.hooks.check = std::make_shared<ArrayCheck>(check, check_motions);
-  if (!cost.is_none()) options.hooks.cost = std::make_shared<ArrayCost>(cost);
+    options.hooks.check = std::make_shared<ArrayCheck>(check, check_motions, joints);
+  if (!cost.is_none()) options.hooks.cost = std::make_shared<ArrayCost>(cost, joints);
   options.progress = to_progress(progress);
   return options;
 }

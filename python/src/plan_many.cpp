@@ -264,18 +264,19 @@ std::vector<std::vector<Waypoint>> to_paths(const py::object& source, const Robo
   return paths;
 }
 
-std::vector<Config> to_postures(py::handle source, const std::string& what) {
-  constexpr const char* kAllowed = "(n, 7), rad";
-  const Array joints = to_numbers(source, what, kAllowed);
-  if (joints.ndim() != 2 || joints.shape(1) != kDof) refuse_shape(joints, what, kAllowed);
+std::vector<Config> to_postures(py::handle source, const std::string& what, std::size_t width) {
+  const char* const allowed = width == kDof ? "(n, 7), rad" : "(n, 6), rad";
+  const Array joints = to_numbers(source, what, allowed);
+  if (joints.ndim() != 2 || joints.shape(1) != static_cast<py::ssize_t>(width))
+    refuse_shape(joints, what, allowed);
   std::vector<Config> postures;
   for (py::ssize_t k = 0; k < joints.shape(0); ++k) {
     try {
-      require_finite(joints.data(k, 0), kDof);
+      require_finite(joints.data(k, 0), width);
     } catch (const py::value_error& error) {
       throw InvalidArgument(what + ": row " + std::to_string(k) + ": " + error.what());
     }
-    postures.push_back(Config::of(joints.data(k, 0)));
+    std::copy_n(joints.data(k, 0), width, postures.emplace_back().data());
   }
   return postures;
 }
@@ -366,7 +367,7 @@ Varied to_varied(const Problem& of, const py::object& paths, const py::dict& pos
                                  std::vector<Config>& postures) {
     if (given.is_none()) return;
     require_kind(is_path(problem), what, problem, "one path");
-    postures = to_postures(given, what);
+    postures = to_postures(given, what, coordinates_of(problem));
     count.take(what, postures.size());
   };
   take_postures(starts, "starts", varied.starts);
@@ -402,16 +403,16 @@ void move_base(const Pose& base, swivel::Problem& problem) {
 std::vector<double> joints_of(const swivel::Answer& answer) {
   std::vector<double> joints;
   if (answer.status != PlanStatus::kSolved) return joints;
-  const auto add = [&](const TrajectoryRow& row) {
-    joints.insert(joints.end(), row.q.data(), row.q.data() + kDof);
+  const auto add = [&](const TrajectoryRow& row, const ArmAnswer& arm) {
+    joints.insert(joints.end(), row.q.data(), row.q.data() + named_joints(arm.joint_names));
   };
   if (answer.arms.size() == 1) {
     for (const swivel::Part& part : answer.arm().parts)
-      for (const TrajectoryRow& row : part.rows) add(row);
+      for (const TrajectoryRow& row : part.rows) add(row, answer.arm());
     return joints;
   }
   for (std::size_t k = 0; k < answer.arm().rows().size(); ++k)
-    for (const ArmAnswer& arm : answer.arms) add(arm.rows()[k]);
+    for (const ArmAnswer& arm : answer.arms) add(arm.rows()[k], arm);
   return joints;
 }
 
@@ -475,7 +476,11 @@ class ManyPlanner {
   [[nodiscard]] Plans nothing() const { return to_plans({}, {}, {0}, width()); }
 
  private:
-  [[nodiscard]] int width() const { return kDof * static_cast<int>(base_.arms.size()); }
+  [[nodiscard]] int width() const {
+    std::size_t joints = 0;
+    for (const ArmTask& arm : base_.arms) joints += arm_of(arm).chain.coordinates();
+    return static_cast<int>(joints);
+  }
   void run(const Varied& varied, ManyOptions& options, const Budget& all,
            const std::stop_token& stop, const std::function<void(const EpisodeRow&)>& row_done) {
     try {

@@ -34,7 +34,7 @@ PathProblem problem_of(const Robot& robot, const std::optional<Task>& task,
                        const SceneObjects& scene) {
   PathProblem problem;
   static_cast<Robot&>(problem) = robot;
-  if (task) static_cast<Task&>(problem) = *task;
+  if (task) static_cast<Task&>(problem) = task_to_core(*task, robot);
   pass_half_turns(problem, problem.waypoints);
   for (const py::handle object : scene) problem.scene.push_back(object.cast<const SceneObject&>());
   return problem;
@@ -64,7 +64,7 @@ class KeptProblem {
     });
   }
   Answer plan(const PlanKeywords& keywords, bool refined, const MotionKeywords& motion) {
-    PlanOptions options = keywords.options();
+    PlanOptions options = keywords.options(coordinates_of(problem_));
     const MotionRequest asked{refined, motion.asked_timing(problem_)};
     Answer answer = made_answer(interruptible([&](const std::stop_token& stop) {
                                   options.stop = stop;
@@ -134,7 +134,7 @@ class SharedPlanner {
   auto prepared(const Work& work, std::optional<double> timeout = {}) {
     const Use use(*this);
     static_cast<void>(to_timeout(timeout));
-    of_path().set_task(task_);
+    of_path().set_task(task_to_core(task_, of_path().problem()));
     return interruptible([&](const std::stop_token& stop) {
       const Budget budget(timeout, nullptr, stop);
       return work(of_path().prepare(budget), of_path().problem(), budget);
@@ -142,7 +142,8 @@ class SharedPlanner {
   }
 
  public:
-  explicit SharedPlanner(Planner planner) : path_(std::move(planner)), task_(path_->problem()) {}
+  explicit SharedPlanner(Planner planner)
+      : path_(std::move(planner)), task_(task_from_core(path_->problem(), path_->problem())) {}
   /// Plans a problem of any kind.
   explicit SharedPlanner(const Problem& problem) { take(problem); }
 
@@ -162,14 +163,14 @@ class SharedPlanner {
   [[nodiscard]] std::unique_ptr<SharedPlanner> clone() {
     if (!path_) return std::make_unique<SharedPlanner>(whole_problem());
     const Use use(*this);
-    of_path().set_task(task_);
+    of_path().set_task(task_to_core(task_, of_path().problem()));
     return std::make_unique<SharedPlanner>(of_path().clone());
   }
   void set_task(Task task) {
     const Use use(*this);
     pass_half_turns(of_path().problem(), task.waypoints);
-    of_path().set_task(task);
-    task_ = of_path().problem();
+    of_path().set_task(task_to_core(task, of_path().problem()));
+    task_ = task_from_core(of_path().problem(), of_path().problem());
   }
   /// Prepares a problem with strokes or two arms. Returns false for one path.
   bool prepare_kept() {
@@ -203,14 +204,14 @@ class SharedPlanner {
   Answer plan(const PlanKeywords& keywords, bool refined, const MotionKeywords& motion) {
     const Use use(*this);
     if (kept_) return kept_->plan(keywords, refined, motion);
-    PlanOptions options = keywords.options();
-    of_path().set_task(task_);
+    PlanOptions options = keywords.options(arm_of(of_path().problem()).chain.coordinates());
+    of_path().set_task(task_to_core(task_, of_path().problem()));
     const swivel::Problem given = one_path(of_path().problem());
     const MotionRequest asked{refined, motion.asked_timing(given)};
     if (asked.timing) {
       of_path().set_task(with_motion_defaults(of_path().problem()));
     } else if (refined) {
-      Task task = task_;
+      Task task = task_to_core(task_, of_path().problem());
       keep_clearance_between_layers(task.limits);
       of_path().set_task(task);
     }
@@ -224,8 +225,8 @@ class SharedPlanner {
     return answer;
   }
   Check check(const std::variant<Answer, python::Motion, Trajectory>& rows) {
-    const GivenAnswer given =
-        std::visit([&](const auto& one) { return given_answer(one_path(problem()), one); }, rows);
+    const GivenAnswer given = std::visit(
+        [&](const auto& one) { return given_answer(to_core(whole_problem()), one); }, rows);
     const GivenArm& arm = given.arms.front();
     return prepared([&](const PreparedRobot& robot, const PathProblem& problem, const Budget&) {
       Check check;
@@ -244,7 +245,8 @@ class SharedPlanner {
         });
   }
   Clearances clearance(const ArrayLike& joints, std::optional<double> timeout) {
-    const std::vector<Config> states = to_states(joints);
+    const std::vector<Config> states =
+        to_states(joints, arm_of(of_path().problem()).chain.coordinates());
     return {std::make_shared<const StateClearances>(prepared(
         [&](const PreparedRobot& robot, const PathProblem& problem, const Budget& budget) {
           return state_clearances(robot, problem, states, budget);
@@ -261,7 +263,7 @@ class SharedPlanner {
   }
   python::Motion time(const Trajectory& trajectory, const MotionKeywords& keywords,
                       std::optional<double> timeout) {
-    const swivel::Problem given = one_path(problem());
+    const swivel::Problem given = to_core(whole_problem());
     const MotionRequest asked{.timing = keywords.timing(given)};
     MotionPlan timed;
     timed.result.joint_names = trajectory.joint_names;
@@ -277,7 +279,7 @@ class SharedPlanner {
     if (kept_) return kept_->advise(answer, timeout);
     require_path(answer, "advise");
     static_cast<void>(to_timeout(timeout));
-    of_path().set_task(task_);
+    of_path().set_task(task_to_core(task_, of_path().problem()));
     return interruptible([&](const std::stop_token& stop) {
       PlanOptions options;
       options.timeout_s = timeout;
@@ -310,7 +312,7 @@ class SharedPlanner {
       path_->set_problem(std::move(path));
     else
       path_.emplace(std::move(path));
-    task_ = path_->problem();
+    task_ = task_from_core(path_->problem(), path_->problem());
     kept_.reset();
   }
 

@@ -18,7 +18,7 @@ namespace swivel::python {
 namespace {
 
 /// The inverse kinematics of a robot, prepared once. A pose has one free coordinate besides: the
-/// arm angle of S-R-S arms, else the value of one joint.
+/// arm angle of S-R-S arms, else the value of one joint; of six joints without a roll nothing.
 class Kinematics {
  public:
   explicit Kinematics(const Robot& robot) : arm_(planning_arm(robot)) {
@@ -32,18 +32,19 @@ class Kinematics {
   }
 
   [[nodiscard]] std::string coordinate() const {
+    if (chain().roll_fixed) return "none";
     return arm_.kind.srs ? "arm angle" : chain().joint_names[static_cast<std::size_t>(joint_)];
   }
   [[nodiscard]] std::string method() const { return arm_.kind.method(); }
-  [[nodiscard]] const auto& joint_names() const { return chain().joint_names; }
+  [[nodiscard]] auto joint_names() const { return names_in(chain().joint_names); }
 
   /// Returns the free coordinate of each state, rad: (n,).
   [[nodiscard]] py::array_t<double> coordinates(const ArrayLike& joints) const {
-    const py::array_t<double> states = to_joints(joints, "joints");
-    py::array_t<double> values(states.shape(0));
-    for (py::ssize_t k = 0; k < states.shape(0); ++k) {
-      const Config q = Config::of(states.data(k, 0));
-      values.mutable_at(k) =
+    const std::vector<Config> states = to_joints(joints, "joints", chain().coordinates()).rows;
+    py::array_t<double> values(static_cast<py::ssize_t>(states.size()));
+    for (std::size_t k = 0; k < states.size(); ++k) {
+      const Config& q = states[k];
+      values.mutable_at(static_cast<py::ssize_t>(k)) =
           arm_.kind.srs ? arm_angle(*arm_.kind.srs, first_plane(*arm_.kind.srs, chain().tool(q)), q)
                         : q[joint_];
     }
@@ -56,6 +57,8 @@ class Kinematics {
                                        bool limits, bool turns) const {
     if (!(step > 0 && step <= kTwoPi))
       throw py::value_error("step: allowed are numbers > 0, at most 2*pi, rad");
+    if (chain().roll_fixed && !at.is_none())
+      throw py::value_error("at: a pose leaves nothing free: allowed is None");
     std::vector<Config> found;
     const std::vector<double> values = at.is_none() ? grid(step) : values_of(at);
     for (const double value : values) {
@@ -64,10 +67,11 @@ class Kinematics {
       else
         solve_locked(tool, value, limits, turns, found);
     }
+    const std::size_t width = chain().coordinates();
     py::array_t<double> joints(
-        {static_cast<py::ssize_t>(found.size()), static_cast<py::ssize_t>(kDof)});
+        {static_cast<py::ssize_t>(found.size()), static_cast<py::ssize_t>(width)});
     double* out = joints.mutable_data();
-    for (const Config& q : found) out = std::copy_n(q.data(), kDof, out);
+    for (const Config& q : found) out = std::copy_n(q.data(), width, out);
     return joints;
   }
 
@@ -184,11 +188,12 @@ auto numbers_of(const Clearances& all, const Get& get) {
 }
 
 void bind_kinematics(py::module_& m) {
-  py::class_<Kinematics>(m, "Kinematics",
-                         "Inverse kinematics of a robot in closed form, prepared once. A pose of "
-                         "the tool leaves one coordinate free (`coordinate`):\n"
-                         "the arm angle of S-R-S arms, the roll of the tool of arms of six joints, "
-                         "else the value of one joint.")
+  py::class_<Kinematics>(
+      m, "Kinematics",
+      "Inverse kinematics of a robot in closed form, prepared once. A pose of "
+      "the tool leaves one coordinate free (`coordinate`):\n"
+      "the arm angle of S-R-S arms, the roll of the tool of six joints with roll (without, none), "
+      "else the value of one joint.")
       .def(py::init<const Robot&>(), py::arg("robot"),
            "Raises ValueError for an arm without a closed form.")
       .def_property_readonly("coordinate", &Kinematics::coordinate,
@@ -276,15 +281,12 @@ void bind_clearances(py::module_& m) {
 
 }  // namespace
 
-std::vector<Config> to_states(py::handle joints) {
-  const py::array_t<double> array = to_joints(joints, "joints");
-  std::vector<Config> states(static_cast<std::size_t>(array.shape(0)));
-  for (std::size_t k = 0; k < states.size(); ++k) {
-    states[k] = Config::of(array.data(static_cast<py::ssize_t>(k), 0));
+std::vector<Config> to_states(py::handle joints, std::size_t width) {
+  std::vector<Config> states = to_joints(joints, "joints", width).rows;
+  for (std::size_t k = 0; k < states.size(); ++k)
     if (!states[k].allFinite())
       throw py::value_error("joints: row " + std::to_string(k) +
                             " is not finite: allowed are numbers, rad");
-  }
   return states;
 }
 

@@ -15,6 +15,6 @@ struct Clearances {
 
 /// Returns states from an array (n, 7) or (7,), rad. Throws ValueError for other shapes and numbers
 /// that are not finite.
-[[nodiscard]] std::vector<Config> to_states(py::handle joints);
+[[nodiscard]] std::vector<Config> to_states(py::handle joints, std::size_t width);
 
 }  // namespace swivel::python

@@ -36,8 +36,10 @@ int cells_of(const LatticeInfo::Grid& grid) {
 
 /// Returns the joint whose position is the coordinate of the map of an arm without a grid: one that
 /// slides, that of a table which carries the base and the part, or the one that the closed form
-/// locks; -1 where there is none of these.
+/// locks; the last of an arm of six joints whose tool may not turn, in which all its solutions
+/// differ; -1 where there is none of these.
 int free_joint(const PreparedRobot& robot, const RobotModel& model) {
+  if (!robot.arm_class().redundant) return kDof - 2;
   if (const int slide = robot.arm().chain.slide(); slide >= 0) return slide;
   const LockMethod& lock = robot.arm_class().lock;
   const bool table = robot.arm().links[static_cast<std::size_t>(model.root_link)].group == 1;
@@ -305,9 +307,10 @@ class MapMaker {
   void lay_out_arcs() {
     using Coordinate = LatticeMap::Coordinate;
     const Chain& chain = lattice_.chain();
-    map_.joint = chain.roll ? -1 : free_joint(view_.robot, *view_.problem.model);
+    const bool rolls = chain.roll && chain.tool_may_turn();
+    map_.joint = rolls ? -1 : free_joint(view_.robot, *view_.problem.model);
     map_.slides = map_.joint >= 0 && map_.joint == chain.slide();
-    map_.coordinate = chain.roll        ? Coordinate::kRoll
+    map_.coordinate = rolls             ? Coordinate::kRoll
                       : map_.joint >= 0 ? Coordinate::kJoint
                                         : Coordinate::kGeneralisedArmAngle;
     values_ = values_of(map_, lattice_, budget_);

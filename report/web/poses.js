@@ -113,9 +113,9 @@ export function placeWords({ s, phi, roll }, { letter, slides }, digits) {
 /** How a joint's position is told: { scale: from rad or m, unit }; one that slides in mm. */
 export const shownOf = ({ slides }) =>
   slides ? { scale: 1000, unit: ' mm' } : { scale: kDegrees, unit: '°' };
-/** The joints of a pose, a line each. */
+/** The joints of a pose that have a name, a line each. */
 export const jointWords = (chain, q, digits) =>
-  chain.joints.map((joint, k) => {
+  chain.joints.filter(({ name }) => name).map((joint, k) => {
     const { scale, unit } = shownOf(joint);
     return `${joint.name}  ${(q[k] * scale).toFixed(digits)}${unit}`;
   });

@@ -45,10 +45,11 @@ function jointLine({ name, lower, upper, slides }, angle, digits, common) {
 
 /** where: words for the place of the pose; digits: of the angles, after the point. */
 export function tellPose(host, chain, where, { q, note }, digits) {
-  const common = commonLength(chain.joints.map(({ name }) => name));
+  const names = chain.joints.map(({ name }) => name).filter(Boolean),
+    common = commonLength(names);
   host.replaceChildren(
     ...(where ? [line('where', where)] : []),
-    ...chain.joints.map((joint, k) => jointLine(joint, q[k], digits, common)),
+    ...names.map((_, k) => jointLine(chain.joints[k], q[k], digits, common)),
     ...(note
       ? [Object.assign(document.createElement('div'), { className: 'note', textContent: note })]
       : []),

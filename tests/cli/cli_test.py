@@ -576,7 +576,7 @@ limits: {{clearance: 0.005}}
             "path:\n  end: {{joints: [0, 0, 0, 0, 0, 0, 0]}}\n",
             ["path.end.joints", "not on the path", " mm and "],
         ),
-        ("tip_link: arm_left_link_7_t", "tip_link: arm_left_link_3_e", ["seven"]),
+        ("tip_link: arm_left_link_7_t", "tip_link: arm_left_link_3_e", ["at least six"]),
         ("{{clearance: 0.005}}", "{{clearance: -1}}", ["clearance"]),
         ("{{clearance: 0.005}}", "{{joint_margin: 3}}", ["joint_margin"]),
         ("name: post", "name: base_link", ["base_link"]),

@@ -186,7 +186,7 @@ class Info(WithFolder):
             done = run("info", DATA / "robots/ur5e_like.urdf", *options)
             self.assertIn("arm        base_link to flange\nclass      6R and a roll", done.stdout)
             self.assertIn(
-                "path.roll\nsolutions  all: closed form: axes 2, 3 and 4 are parallel", done.stdout
+                "to spare\nsolutions  all: closed form: axes 2, 3 and 4 are parallel", done.stdout
             )
             self.assertEqual(
                 re.findall(r"^joint \d +(\S+)", done.stdout, re.M),

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <stdexcept>
 #include <string>
 
 #include "arms.hpp"
@@ -84,14 +85,46 @@ TEST(Roll, IsTheSeventhJointOfSixAndOneCoordinateMoreOfSeven) {
   EXPECT_FALSE(with_free_roll.roll);
   EXPECT_TRUE(with_free_roll.free_roll == Roll(-1, 2) && with_free_roll.tool_may_turn());
   EXPECT_EQ(with_free_roll.joint_names.front(), "j1");
-  EXPECT_EQ(message(small, none, std::nullopt),
-            "kr6-r900: robot.tip_link: the arm from 'base' to 'l7' has six joints: allowed with a "
-            "tool that may turn about its own z "
-            "axis: add `roll: free`, or [lower, upper] in rad, to `path`");
+  // Six joints without a range of the roll have a tool that may not turn.
+  const Chain fixed = build(small, none, std::nullopt).chain,
+              free = build(small, none, Roll{}).chain;
+  EXPECT_TRUE(fixed.roll && fixed.roll_fixed && !fixed.tool_may_turn());
+  EXPECT_TRUE(free.roll && !free.roll_fixed && free.tool_may_turn());
+  EXPECT_EQ(fixed.coordinates(), 6u);
+  EXPECT_EQ(free.coordinates(), 7u);
+  EXPECT_EQ(named_joints(fixed.joint_names), 6u);
+  EXPECT_EQ(named_joints(free.joint_names), 7u);
+  EXPECT_TRUE(fixed.jacobian(Config::Ones()).col(kDof - 1).isZero(0));
+  EXPECT_EQ(message(small, first, std::nullopt),
+            "kr6-r900: robot.tip_link: only 5 movable joints that are not held between 'base' and "
+            "'l7': allowed are at least six");
   EXPECT_EQ(build(model, first, Roll{}).chain.joint_names.front(), "j2");
   // What the arm carries moves with its six joints at most.
   const ArmModel arm = build(small, none, Roll{});
   for (const LinkPlacement& link : arm.links) EXPECT_LT(link.group, kDof);
+}
+
+/// Arms of seven whose elbow is held are singular in every posture, or nearly so.
+TEST(Roll, SixJointsThatMoveTheToolInFiveWaysAreRefused) {
+  const auto held = [](const std::string& name, const std::string& joint) {
+    for (const ArmTable& arm : arms_7r()) {
+      if (arm.name != name) continue;
+      const RobotModel model = model_of(arm, arm.joints, urdf_pose(arm.tip_xyz, arm.tip_rpy));
+      return build_arm(model, "base", model.links.back().name, {{joint, 0.4}}, Pose::Identity())
+          .chain;
+    }
+    throw std::logic_error("no such arm");
+  };
+  try {
+    (void)classify(held("iiwa7", "j4"), "file");
+    FAIL() << "singular in every posture";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("singular in every posture"), std::string::npos)
+        << error.what();
+  }
+  EXPECT_EQ(classify(held("iiwa7", "j3"), "file").kind, ArmKind::kArcs);
+  EXPECT_EQ(classify(held("gen3", "j4"), "file").kind, ArmKind::kSampled);
+  EXPECT_EQ(classify(held("gen3", "j3"), "file").kind, ArmKind::kArcs);
 }
 
 /// The least cost over a grid of rolls from one end of what a layer allows to the other, solved in

@@ -291,8 +291,8 @@ TEST(Slide, MissesNoArcThatClosedFormsFindEveryMillimetre) {
   }
 }
 
-/// What slides and is not planned is refused by name.
-TEST(Slide, RefusesTwoSlidesAndArmsWithoutAClosedForm) {
+/// Of two joints that slide both are named.
+TEST(Slide, RefusesTwoSlides) {
   const TestRobot one = slide_robots()[0];
   TestRobot two = one;
   auto model = std::make_shared<RobotModel>(*one.model);
@@ -309,15 +309,47 @@ TEST(Slide, RefusesTwoSlidesAndArmsWithoutAClosedForm) {
   };
   EXPECT_NE(refusal([&] { (void)arm_of(two); }).find("'slide' and 'joint_1' are prismatic"),
             std::string::npos);
-  model = std::make_shared<RobotModel>(*one.model);
-  Joint& fourth = model->joints[static_cast<std::size_t>(model->find_joint("joint_5"))];
-  fourth.origin.translation() += Vector3d(0.05, 0.02, 0.01);
-  two.model = model;
-  const Chain chain = arm_of(two).chain;
-  EXPECT_NE(refusal([&] {
-              (void)classify(chain, "robot.urdf");
-            }).find("the six others have no closed form"),
-            std::string::npos);
+}
+
+/// Without a closed form of the six others arcs are sampled: they are exact, and few are missed.
+TEST(Slide, FindsMostArcsWithoutAClosedForm) {
+  Random random(seed("Slide.FindsMostArcsWithoutAClosedForm"));
+  for (TestRobot robot : {slide_robots()[0], slide_robots()[2]}) {
+    auto model = std::make_shared<RobotModel>(*robot.model);
+    Joint& fifth = model->joints[static_cast<std::size_t>(model->find_joint("joint_5"))];
+    fifth.origin.translation() += Vector3d(0.05, 0.02, 0.01);
+    fifth.origin.rotate(Eigen::AngleAxisd(0.2, Vector3d(1, 2, 3).normalized()));
+    robot.model = model;
+    const Chain chain = arm_of(robot).chain;
+    const ArmClass kind = classify(chain, robot.name);
+    ASSERT_EQ(kind.kind, ArmKind::kSampled) << robot.name;
+    const SelfMotion motion(chain, kind.lock, 0);
+    const PoseNewton newton(chain);
+    const int poses = trials(12);
+    int sought = 0, missed = 0;
+    double residual = 0;
+    for (int trial = 0; trial < poses; ++trial) {
+      const Pose tool = chain.tool(random_config(chain, random));
+      const auto arcs = motion.arcs(tool);
+      for (const SelfMotionArc& arc : arcs)
+        for (const Config& q : arc.q)
+          residual =
+              std::max(residual, (chain.tool(q).matrix() - tool.matrix()).cwiseAbs().maxCoeff());
+      for (int start = 0; start < 60; ++start) {
+        auto found = newton.approach(random_config(chain, random), tool, 60);
+        if (!found || !motion.canonical(found->q)) continue;
+        ++sought;
+        missed += distance_to(arcs, found->q, chain.slide()) > 0.02;
+      }
+    }
+    std::printf(
+        "  %s without a closed form: %d poses, residual %.1e; %d solutions sought, %d off "
+        "every arc\n",
+        robot.name.c_str(), poses, residual, sought, missed);
+    EXPECT_LE(residual, 1e-9) << robot.name;
+    EXPECT_GE(sought, at_least(poses * 5)) << robot.name;
+    EXPECT_LE(missed, sought / 20) << robot.name;
+  }
 }
 
 }  // namespace

@@ -91,7 +91,7 @@ class Problems(unittest.TestCase):
             "no shape": lambda p: p["scene"].append({"name": "nothing"}),
             "both rotations": lambda p: p["scene"][0].update(rpy=[0, 0, 0], quat=[1, 0, 0, 0]),
             "waypoints and a file": lambda p: p["path"].update(file="path.csv"),
-            "six weights": lambda p: p.update(cost={"weights": [1] * 6}),
+            "five weights": lambda p: p.update(cost={"weights": [1] * 5}),
             "another metric": lambda p: p.update(cost={"metric": "l1"}),
         }
         self.refuse(made_problem(walls=["wall"]) | {"limits": {}, "resolution": {}}, changes)

@@ -8,6 +8,7 @@
 #include "problem_support.hpp"
 #include "seed.hpp"
 #include "swivel/core/base/rpy.hpp"
+#include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/io/meshes/mesh.hpp"
 #include "swivel/io/problems/problem.hpp"
@@ -347,6 +348,10 @@ void change_rest(PathProblem& p, swivel::test::Random& random) {
   if (random.coin(0.3)) p.cost.metric = CostMetric::kTime;
   if (random.coin(0.3)) p.cost.weights = {1, 1, random.uniform(1, 2), 1, 1, 1, 1};
   if (random.coin(0.3)) p.refinement.smoothing = random.uniform(0, 0.1);
+  if (!p.roll && build_arm(*p.model, p.base_link, p.tip_link, p.hold, p.tool).chain.roll_fixed) {
+    if (p.cost.weights) p.cost.weights->back() = 0;  // there is no seventh number
+    if (p.start) (*p.start)[kDof - 1] = 0;
+  }
   if (random.coin(0.3))
     p.attached.push_back({"held", Cylinder{0.1, 0.2}, random_pose(random), p.tip_link});
   if (p.attached.empty()) return;

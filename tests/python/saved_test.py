@@ -55,7 +55,8 @@ def change_task(problem, draw):
     limits = problem.limits
     limits.clearance = draw.uniform(0.001, 0.01)
     limits.tool_path_error = draw.choice([None, 0.002])
-    limits.joint_speed = draw.choice([None, [1.0] * 7, list(np.linspace(1, 2, 7))])
+    joints = len(problem.joint_names)
+    limits.joint_speed = draw.choice([None, [1.0] * joints, list(np.linspace(1, 2, joints))])
     limits.edges = draw.choice(["nodes", "continuous"])
     problem.resolution.ds = draw.uniform(0.002, 0.02)
     if draw.random() < 0.3:
@@ -66,10 +67,10 @@ def change_task(problem, draw):
     if problem.closed:
         return
     if draw.random() < 0.3:
-        problem.start = [draw.uniform(-0.1, 0.1) for _ in range(7)]
+        problem.start = [draw.uniform(-0.1, 0.1) for _ in problem.joint_names]
         problem.start_at = draw.choice([None, 0.01])
     if draw.random() < 0.3:
-        problem.end = [draw.uniform(-0.1, 0.1) for _ in range(7)]
+        problem.end = [draw.uniform(-0.1, 0.1) for _ in problem.joint_names]
     waypoints = problem.waypoints
     if draw.random() < 0.3:
         waypoints[0, 0] += 0.001

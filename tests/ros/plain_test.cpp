@@ -240,7 +240,7 @@ TEST(Convert, WhatIsNotChecked) {
   EXPECT_EQ(service->answer(query, {}).code, ros::kSuccess);
 }
 
-TEST(Convert, SixJointsNeedARoll) {
+TEST(Convert, SixJointsKeepThePoseOrTurnTheTool) {
   const std::string urdf = test::data_text("ur5e_like.urdf"),
                     srdf = test::data_text("ur5e_like.srdf");
   const ros::JointValues state{{"joint_1", "joint_2", "joint_3", "joint_4", "joint_5", "joint_6"},
@@ -249,16 +249,18 @@ TEST(Convert, SixJointsNeedARoll) {
   query.frame = "flange";
   query.waypoints = {{0, 0, -0.05, 1, 0, 0, 0}};
   ros::Settings settings;
-  ros::PathService refuses(urdf, srdf, settings);
-  refuses.state(state);
-  EXPECT_EQ(refuses.answer(query, {}).code, ros::kFailure);
-  settings.roll = 0.5;
-  ros::PathService service(urdf, srdf, settings);
-  service.state(state);
-  const ros::Answer answer = service.answer(query, {});
-  EXPECT_EQ(answer.fraction, 1) << answer.words;
-  ASSERT_FALSE(answer.points.empty());
-  EXPECT_EQ(answer.points[0].positions.size(), 6u);
+  for (const double roll : {0.0, 0.5}) {
+    settings.roll = roll;
+    ros::PathService service(urdf, srdf, settings);
+    service.state(state);
+    const ros::Answer answer = service.answer(query, {});
+    EXPECT_EQ(answer.fraction, 1) << answer.words;
+    ASSERT_FALSE(answer.points.empty());
+    EXPECT_EQ(answer.points[0].positions.size(), 6u);
+    EXPECT_FALSE(answer.points[0].velocities.empty());
+    for (std::size_t j = 0; j < 6; ++j)
+      EXPECT_NEAR(answer.points[0].positions[j], state.positions[j], 1e-9);
+  }
 }
 
 TEST(Convert, FurtherJointsOfTheGroupAreHeldWhereTheyAre) {

@@ -20,7 +20,7 @@ ArcLengths::ArcLengths(const Chain& chain, const ToolPath& path, std::vector<Con
     Curve& curve = curves_.emplace_back();
     PoseNewton::Linear at;
     const Pose& tool = path.layer(static_cast<int>(i)).tool;
-    if (!newton_->linear(origins[i], tool, at)) {
+    if (chain.roll_fixed || !newton_->linear(origins[i], tool, at)) {
       curve.ended = {true, true};
       for (auto& side : curve.side) side.push_back({origins[i], Config::Zero(), 0});
       continue;

@@ -53,7 +53,8 @@ std::optional<Config> ArcMotion::joints(double travel) const {
   const Pose tool = path_->at_travel(travel);
   Config q;
   for (std::size_t j = 0; j < kDof; ++j) q[static_cast<Eigen::Index>(j)] = spline_[j].at(travel);
-  const auto near = newton_.nearest(q, tool, Config::Ones(), kSteps);
+  auto near = newton_.nearest(q, tool, Config::Ones(), kSteps);
+  if (!near) near = newton_.through_singular(q, tool);
   if (!near) return std::nullopt;
   // One more step makes joints as smooth as their digits allow: jerks are differences over
   // milliseconds.

@@ -34,10 +34,8 @@ bool any_rolls(const ArmAnswer& arm) {
   return any(arm.parts) || any(arm.partial);
 }
 
-std::string placeless_fields(const TrajectoryRow& row, bool roll) {
-  std::string text = roll ? ",,," : ",,";
-  for (const double angle : row.q.coordinates()) text += ',' + format_double(angle);
-  return text;
+std::string placeless_fields(const TrajectoryRow& row, bool roll, std::size_t joints) {
+  return (roll ? ",,," : ",,") + joint_fields(row.q, joints);
 }
 
 namespace {
@@ -54,6 +52,7 @@ std::string strokes_csv(const ArmAnswer& arm, const Problem& job) {
   for (const std::string& name : job_header(arm.joint_names, roll))
     text += (text.empty() ? "" : ",") + csv_field(name);
   text += '\n';
+  const std::size_t joints = named_joints(arm.joint_names);
   for (const Part& part : arm.parts) {
     const std::string stroke =
         part.run ? csv_line_field(job.arm().strokes[part.run->stroke].name) : "";
@@ -61,7 +60,7 @@ std::string strokes_csv(const ArmAnswer& arm, const Problem& job) {
     for (std::size_t k = 0; k < part.rows.size(); ++k) {
       TrajectoryRow row = part.rows[k];
       if (part.run) row.s += s_of_piece(job.arm().strokes[part.run->stroke]);
-      text += part.run ? trajectory_fields(row, roll) : placeless_fields(row, roll);
+      text += part.run ? trajectory_fields(row, roll, joints) : placeless_fields(row, roll, joints);
       text += ',' + stroke + (process[k] ? ",1\n" : ",0\n");
     }
   }

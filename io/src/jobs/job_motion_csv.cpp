@@ -53,15 +53,16 @@ std::string to_job_motion_csv(const ArmMotion& motion, const Problem& job,
   for (const std::string& name : header_of(joint_names, roll))
     text += (text.empty() ? "" : ",") + csv_field(name);
   text += '\n';
+  const std::size_t joints = named_joints(joint_names);
   for (std::size_t k = 0; k < motion.rows.size(); ++k) {
     const TimedRow& row = motion.rows[k];
     text += format_double(row.t) + ',';
     TrajectoryRow place = row.row;
     if (placed(k))
       place.s += s_of_piece(job.arm().strokes[stroke(k) ? *stroke(k) : *stroke(k + 1)]);
-    text += placed(k) ? trajectory_fields(place, roll) : placeless_fields(place, roll);
-    for (const Config* values : {&row.v, &row.a})
-      for (const double value : values->coordinates()) text += ',' + format_double(value);
+    text +=
+        placed(k) ? trajectory_fields(place, roll, joints) : placeless_fields(place, roll, joints);
+    text += joint_fields(row.v, joints) + joint_fields(row.a, joints);
     text += ',' + (stroke(k) ? csv_line_field(job.arm().strokes[*stroke(k)].name) : "");
     text += process[k] ? ",1\n" : ",0\n";
   }

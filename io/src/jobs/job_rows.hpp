@@ -20,7 +20,7 @@ namespace swivel::io {
 [[nodiscard]] bool any_rolls(const ArmAnswer& arm);
 
 /// Returns the fields of a row without a place on a stroke: those before the joints are empty.
-[[nodiscard]] std::string placeless_fields(const TrajectoryRow& row, bool roll);
+[[nodiscard]] std::string placeless_fields(const TrajectoryRow& row, bool roll, std::size_t joints);
 
 /// Returns for each part of a job's motion the index of its stroke; none for transitions.
 [[nodiscard]] std::vector<std::optional<std::size_t>> strokes_of_parts(const ArmMotion& motion,

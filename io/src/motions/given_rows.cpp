@@ -20,7 +20,7 @@ std::vector<std::string> workcell_columns(const std::vector<ArmColumns>& arms) {
   for (const char* const what : {"s", "phi", "branch"})
     for (const ArmColumns& arm : arms) columns.push_back(what + arm.suffix);
   for (const ArmColumns& arm : arms)
-    for (std::size_t j = 0; j < kDof; ++j) columns.push_back(arm.name(j));
+    for (std::size_t j = 0; j < named_joints(arm.joints); ++j) columns.push_back(arm.name(j));
   return columns;
 }
 

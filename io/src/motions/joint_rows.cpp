@@ -12,7 +12,7 @@
 namespace swivel::io {
 
 bool may_lack_last(const JointNames& joint_names) {
-  return joint_names[kDof - 1] == "roll";
+  return named_joints(joint_names) < kDof || joint_names.back() == "roll";
 }
 
 std::string ArmColumns::name(std::size_t j) const {
@@ -35,7 +35,7 @@ void JointRows::joints(const std::vector<std::string>& names, const std::string&
   std::vector<Joint> joints;
   const auto joint_of = [&](const std::string& name) -> std::optional<Joint> {
     for (std::size_t arm = 0; arm < arms_.size(); ++arm)
-      for (std::size_t j = 0; j < kDof; ++j)
+      for (std::size_t j = 0; j < named_joints(arms_[arm].joints); ++j)
         if (arms_[arm].name(j) == name) return Joint{arm, static_cast<Eigen::Index>(j)};
     return std::nullopt;
   };
@@ -51,7 +51,7 @@ void JointRows::joints(const std::vector<std::string>& names, const std::string&
   }
   for (std::size_t arm = 0; arm < arms_.size(); ++arm) {
     bool has_last = true;
-    for (std::size_t j = 0; j < kDof; ++j) {
+    for (std::size_t j = 0; j < named_joints(arms_[arm].joints); ++j) {
       const Joint joint{arm, static_cast<Eigen::Index>(j)};
       if (std::find(joints.begin(), joints.end(), joint) != joints.end()) continue;
       if (j + 1 < kDof || !may_lack_last(arms_[arm].joints))

@@ -28,11 +28,10 @@ std::string to_timed_csv(const TimedPath& motion, const JointNames& joint_names)
   for (const std::string& name : csv_header(motion_schema(), joint_names, roll))
     text.append(text.empty() ? "" : ",").append(csv_field(name));
   text += '\n';
+  const std::size_t joints = named_joints(joint_names);
   for (const TimedRow& row : motion.rows) {
-    text += format_double(row.t) + ',' + trajectory_fields(row.row, roll);
-    for (const Config* values : {&row.v, &row.a})
-      for (const double value : values->coordinates()) text += ',' + format_double(value);
-    text += '\n';
+    text += format_double(row.t) + ',' + trajectory_fields(row.row, roll, joints) +
+            joint_fields(row.v, joints) + joint_fields(row.a, joints) + '\n';
   }
   return text;
 }

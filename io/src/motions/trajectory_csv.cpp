@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <span>
+
 #include "files/csv.hpp"
 #include "files/files.hpp"
 #include "motions/trajectory_columns.hpp"
@@ -43,18 +45,23 @@ std::vector<std::string> csv_header(const Schema& row,
       header.push_back(name);
       continue;
     }
-    for (const std::string& joint : joint_names)
+    for (const std::string& joint : std::span(joint_names).first(named_joints(joint_names)))
       header.push_back(joint + name.substr(kJoint.size()));
   }
   return header;
 }
 
-std::string trajectory_fields(const TrajectoryRow& row, bool roll) {
+std::string joint_fields(const Config& values, std::size_t joints) {
+  std::string text;
+  for (std::size_t j = 0; j < joints; ++j)
+    text += ',' + format_double(values[static_cast<Eigen::Index>(j)]);
+  return text;
+}
+
+std::string trajectory_fields(const TrajectoryRow& row, bool roll, std::size_t joints) {
   std::string text = format_double(row.s) + ',' + format_double(row.phi) + ',';
   if (roll) text += format_double(row.roll) + ',';
-  text += std::to_string(row.branch);
-  for (const double angle : row.q.coordinates()) text += ',' + format_double(angle);
-  return text;
+  return text + std::to_string(row.branch) + joint_fields(row.q, joints);
 }
 
 namespace {
@@ -63,10 +70,11 @@ std::string path_csv(const std::vector<TrajectoryRow>& rows,
                      const std::array<std::string, kDof>& joint_names) {
   std::string text;
   const bool roll = any_rolls(rows);
+  const std::size_t joints = named_joints(joint_names);
   for (const std::string& name : csv_header(trajectory_schema(), joint_names, roll))
     text.append(text.empty() ? "" : ",").append(csv_field(name));
   text += '\n';
-  for (const TrajectoryRow& row : rows) text += trajectory_fields(row, roll) + '\n';
+  for (const TrajectoryRow& row : rows) text += trajectory_fields(row, roll, joints) + '\n';
   return text;
 }
 

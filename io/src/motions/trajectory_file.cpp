@@ -87,7 +87,7 @@ class Header {
          {std::pair("", &ArmPlaces::q), std::pair("_v", &ArmPlaces::v),
           std::pair("_a", &ArmPlaces::a)})
       for (std::size_t arm = 0; arm < sought_.arms.size(); ++arm)
-        for (std::size_t j = 0; j < kDof; ++j) {
+        for (std::size_t j = 0; j < named_joints(sought_.arms[arm].joints); ++j) {
           Place* const place = &(columns_.arms[arm].*places)[j];
           known_.push_back({sought_.arms[arm].name(j) + ending, place, *ending == '\0'});
           // Earlier versions gave the rolls of two arms one name.
@@ -177,7 +177,8 @@ class TableRows {
       stated.branch = places.branch.has_value();
       // Swivel leaves the column out where all are 0
       stated.roll = places.roll || (stated.s && stated.phi && stated.branch);
-      stated.last_joint = places.q.back().has_value();
+      stated.last_joint =
+          places.q.back().has_value() || named_joints(sought_.arms[arm].joints) < kDof;
       stated.v = places.v.front().has_value();
       stated.a = places.a.front().has_value();
     }

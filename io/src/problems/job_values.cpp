@@ -60,8 +60,9 @@ class JobValues {
   void add_motion_between(YAML::Node& root) const {
     if (!layout_.path) {
       if (job_.arm().home)
-        for (const double joint : job_.arm().home->coordinates())
-          root["home"]["joints"].push_back(csv_number(joint));
+        for (std::size_t j = 0; j < coordinates_of(job_.arm()); ++j)
+          root["home"]["joints"].push_back(
+              csv_number((*job_.arm().home)[static_cast<Eigen::Index>(j)]));
       root["order"] = job_.arm().order == StrokeOrder::kBest ? "best" : "given";
       root["rapid"] = scalar(job_.arm().rapid);
       if (approach_) root["approach"] = offset_node(*approach_);

@@ -81,12 +81,13 @@ class ProblemReader {
   /// Returns the path of a file that a key names, from the folder of the problem file.
   [[nodiscard]] std::filesystem::path resolve(const YamlValue& name) const;
   [[nodiscard]] std::string link_name(const YamlValue& value) const;
-  /// Returns one number for each joint of the arm, base to tip. An arm of six joints has a seventh
-  /// number, for the roll of the tool.
+  /// Returns one number for each joint of the arm, base to tip. An arm of six joints whose tool may
+  /// turn has a seventh number, for the roll; one whose tool may not has six, and 0 is added.
   [[nodiscard]] std::vector<double> joint_numbers(const YamlValue& value) const;
   /// Returns whether a list of joints leaves out the roll of an arm of six joints.
   [[nodiscard]] static bool leaves_out_roll(const YamlValue& joints, const Chain& chain) {
-    return chain.roll && joints.is_sequence() && joints.items().size() == kDof - 1;
+    return chain.tool_may_turn() && chain.roll && joints.is_sequence() &&
+           joints.items().size() == kDof - 1;
   }
   /// Returns the joints of such a list, with roll 0.
   [[nodiscard]] static Config without_roll(const YamlValue& joints);

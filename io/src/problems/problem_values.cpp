@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <span>
 #include <type_traits>
 #include <variant>
 
@@ -12,6 +13,8 @@
 #include "schema/schema.hpp"
 #include "schema/yaml_edit.hpp"
 #include "swivel/core/base/rpy.hpp"
+#include "swivel/core/kinematics/chain/arm.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/study/placement.hpp"
 
 namespace swivel::io {
@@ -41,18 +44,19 @@ YAML::Node numbers_node(const Numbers& numbers) {
 YAML::Node vector_node(const Vector3d& v) {
   return numbers_node(std::array{v.x(), v.y(), v.z()});
 }
-YAML::Node joints_node(const Config& joints) {
+YAML::Node joints_node(const Config& joints, std::size_t count) {
   YAML::Node section;
-  section["joints"] = numbers_node(std::vector<double>(joints.data(), joints.data() + kDof));
+  section["joints"] = numbers_node(std::vector<double>(joints.data(), joints.data() + count));
   return section;
 }
-/// Returns a limit of the seven joints: one number where it is the same for all, else a list of
-/// seven; null where the problem does not give it.
-YAML::Node of_joints_node(const std::optional<std::array<double, kDof>>& numbers) {
+/// Returns a limit of the first `count` joints: one number where it is the same for all, else a
+/// list; null where the problem does not give it.
+YAML::Node of_joints_node(const std::optional<std::array<double, kDof>>& numbers,
+                          std::size_t count) {
   if (!numbers) return YAML::Node(YAML::NodeType::Null);
   const bool same = std::all_of(numbers->begin(), numbers->end(),
                                 [&](double number) { return number == numbers->front(); });
-  return same ? number_node(numbers->front()) : numbers_node(*numbers);
+  return same ? number_node(numbers->front()) : numbers_node(std::span(*numbers).first(count));
 }
 template <class Value, class Node>
 YAML::Node map_node(const std::map<std::string, Value>& values, const Node& node) {
@@ -87,7 +91,11 @@ class ProblemValues {
  public:
   ProblemValues(const PathProblem& problem, const fs::path& folder,
                 const std::vector<std::string>& scene_names, const std::string& file)
-      : problem_(problem), folder_(folder), scene_names_(scene_names), file_(file) {}
+      : problem_(problem),
+        folder_(folder),
+        scene_names_(scene_names),
+        file_(file),
+        joints_(coordinates_of(problem)) {}
 
   YAML::Node all() {
     YAML::Node root;
@@ -202,7 +210,7 @@ class ProblemValues {
     if (const auto& roll = problem_.roll)
       section["roll"] =
           *roll == Roll() ? text_node("free") : numbers_node(std::array{roll->lower, roll->upper});
-    if (problem_.end) section["end"] = joints_node(*problem_.end);
+    if (problem_.end) section["end"] = joints_node(*problem_.end, joints_);
     section["closed"] = word_node(problem_.closed);
     return section;
   }
@@ -279,9 +287,9 @@ class ProblemValues {
     section["step_error"] = number_node(l.step_error);
     section["tool_speed"] = number_node(l.tool_speed);
     section["tool_turn_speed"] = number_node(l.tool_turn_speed);
-    section["joint_speed"] = of_joints_node(l.joint_speed);
-    section["joint_acceleration"] = of_joints_node(l.joint_acceleration);
-    section["joint_jerk"] = of_joints_node(l.joint_jerk);
+    section["joint_speed"] = of_joints_node(l.joint_speed, joints_);
+    section["joint_acceleration"] = of_joints_node(l.joint_acceleration, joints_);
+    section["joint_jerk"] = of_joints_node(l.joint_jerk, joints_);
     return section;
   }
   void add_limits_of_robot(YAML::Node& section) const {
@@ -304,7 +312,7 @@ class ProblemValues {
 
   void add_start(YAML::Node& root) const {
     if (!problem_.start) return;
-    root["start"] = joints_node(*problem_.start);
+    root["start"] = joints_node(*problem_.start, joints_);
     if (problem_.start_at) root["start_at"] = number_node(*problem_.start_at);
     if (problem_.start_tolerance != Task().start_tolerance)
       root["start_tolerance"] = number_node(problem_.start_tolerance);
@@ -316,7 +324,7 @@ class ProblemValues {
     section["metric"] = cost.metric == CostMetric::kL2    ? "l2"
                         : cost.metric == CostMetric::kMax ? "max"
                                                           : "time";
-    if (cost.weights) section["weights"] = numbers_node(*cost.weights);
+    if (cost.weights) section["weights"] = numbers_node(std::span(*cost.weights).first(joints_));
     section["roll"] = number_node(cost.roll);
     return section;
   }
@@ -343,6 +351,7 @@ class ProblemValues {
   const fs::path& folder_;
   const std::vector<std::string>& scene_names_;
   const std::string& file_;
+  std::size_t joints_;  // coordinates of the arm
 };
 
 }  // namespace
@@ -360,6 +369,16 @@ std::string name_seen_from(const fs::path& folder, const fs::path& name) {
   if (from.begin() == from.end() || std::next(from.begin()) == from.end() || top(file) != top(from))
     return file.string();
   return file.lexically_relative(from).string();
+}
+
+std::size_t coordinates_of(const Robot& robot) {
+  if (robot.roll) return kDof;
+  try {
+    return build_arm(*robot.model, robot.base_link, robot.tip_link, robot.hold, robot.tool)
+        .chain.coordinates();
+  } catch (const InputError&) {
+    return kDof;
+  }
 }
 
 YAML::Node problem_values(const PathProblem& problem, const fs::path& folder,

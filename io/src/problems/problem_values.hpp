@@ -21,6 +21,10 @@ namespace swivel::io {
 [[nodiscard]] std::string name_seen_from(const std::filesystem::path& folder,
                                          const std::filesystem::path& name);
 
+/// Returns the number of coordinates of a robot's arm, as files have them; 7 where its files do not
+/// tell.
+[[nodiscard]] std::size_t coordinates_of(const Robot& robot);
+
 /// Returns all keys of a problem file, in the order of the schema, with defaults of numbers and
 /// words stated. Names of files are those seen from `folder`; paths are waypoints, not files.
 /// Bodies that are fixed to a link are listed in `scene`, not in `robot.attached`, where

@@ -595,11 +595,23 @@ void ProblemReader::read_limits(const YamlValue& value) {
 }
 
 std::vector<double> ProblemReader::joint_numbers(const YamlValue& value) const {
-  if (problem_.roll && value.is_sequence() && value.items().size() == kDof - 1 && arm().chain.roll)
-    value.fail("has 6 entries",
-               "a list of 7 numbers: one for each of the six joints, base to tip, and a seventh "
-               "for the roll of the tool");
-  return value.numbers();
+  const Chain chain = suitable_arm().chain;
+  if (!value.is_sequence() || (!chain.roll && value.items().size() != kDof - 1))
+    return value.numbers();
+  const std::string by_arm =
+      more_joints_.empty() ? "" : "; where two arms differ, weights by joint, rates by arm";
+  if (value.items().size() != chain.coordinates())
+    value.fail("has " + std::to_string(value.items().size()) + " entries",
+               (chain.roll_fixed ? "a list of 6 numbers, one for each joint, base to tip: without "
+                                   "path.roll the tool does not turn"
+                : chain.roll ? "a list of 7 numbers: one for each of the six joints, base to tip, "
+                               "and a seventh for the roll of the tool"
+                             : "a list of 7 numbers, one for each joint, base to tip") +
+                   by_arm);
+  std::vector<double> numbers;
+  for (const YamlValue& item : value.items()) numbers.push_back(item.number());
+  numbers.resize(kDof, 0);
+  return numbers;
 }
 
 ArmModel ProblemReader::arm() const {
@@ -734,20 +746,23 @@ void ProblemReader::read_weights(const YamlValue& value) {
   if (!value.is_map()) {
     const std::vector<double> numbers = joint_numbers(value);
     std::array<double, kDof>& weights = problem_.cost.weights.emplace();
-    for (std::size_t k = 0; k < kDof; ++k) weights[k] = allowed(value.items()[k], numbers[k]);
+    std::copy(numbers.begin(), numbers.end(), weights.begin());
+    for (std::size_t k = 0; k < value.items().size(); ++k)
+      static_cast<void>(allowed(value.items()[k], numbers[k]));
     return;
   }
   const Chain chain = arm().chain;
   const auto& names = chain.joint_names;
   std::array<double, kDof> weights = joint_weights(Cost(), chain);
+  const auto end = names.begin() + static_cast<std::ptrdiff_t>(named_joints(names));
   for (const auto& [joint, weight] : value.entries()) {
-    const auto at = std::find(names.begin(), names.end(), joint);
-    if (at == names.end() &&
+    const auto at = std::find(names.begin(), end, joint);
+    if (at == end &&
         std::find(more_joints_.begin(), more_joints_.end(), joint) != more_joints_.end())
       continue;
-    if (at == names.end())
+    if (at == end)
       weight.fail("'" + joint + "' is no joint of the arm, nearest is '" +
-                      nearest_name(joint, {names.begin(), names.end()}) + "'",
+                      nearest_name(joint, {names.begin(), end}) + "'",
                   "a joint of the arm");
     weights[static_cast<std::size_t>(at - names.begin())] = allowed(weight, weight.number());
   }
@@ -789,6 +804,7 @@ void ProblemReader::set(const YamlSection& section, const char* key,
   if (!value->is_sequence()) return target->fill(value->number());
   const std::vector<double> values = joint_numbers(*value);
   std::copy(values.begin(), values.end(), target->begin());
+  if (value->items().size() < kDof) target->back() = target->at(kDof - 2);  // of no joint
 }
 
 }  // namespace swivel::io

@@ -159,14 +159,15 @@ class StrokesWriter {
             {"bodies", or_null(none->bodies)}};
   }
 
-  [[nodiscard]] static Json advice(const AdviceList& all) {
+  [[nodiscard]] Json advice(const AdviceList& all) const {
+    const std::size_t joints = named_joints(arm_.joint_names);
     Json job = Json::array(), strokes = Json::array();
     for (const Advice& one : all.changes)
       job.push_back({{"change", to_string(one.change)},
                      {"words", words(one)},
                      {"strokes", one.strokes},
                      {"length", or_null(one.length)},
-                     {"home", one.home ? Json(one.home->coordinates()) : Json(nullptr)},
+                     {"home", one.home ? joints_json(*one.home, joints) : Json(nullptr)},
                      {"outcome", to_string(one.outcome)},
                      {"cost", or_null(one.cost)}});
     for (const AdviceAlone& one : all.alone)
@@ -216,11 +217,13 @@ class StrokesWriter {
 
   [[nodiscard]] Json parts(const std::vector<Part>& parts) const {
     Json list = Json::array();
+    const std::size_t joints = named_joints(arm_.joint_names);
     for (const Part& part : parts) {
       const std::vector<bool> process = process_of_rows(part, job_);
       Json rows = Json::array();
       for (const TrajectoryRow& row : rows_of(part)) {
-        rows.push_back(part.run ? row_json(row, roll_) : Json{{"joints", joints_json(row)}});
+        rows.push_back(part.run ? row_json(row, roll_, joints)
+                                : Json{{"joints", joints_json(row.q, joints)}});
         rows.back()["process"] = process[rows.size() - 1];
       }
       list.push_back({{"stroke", part.run ? Json(name(*part.run)) : Json(nullptr)},

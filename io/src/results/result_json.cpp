@@ -81,7 +81,7 @@ Json path_json(const Answer& answer, const AnswerExtras& extras) {
   json["certificate"] = extras.certificate
                             ? certificate_json(*extras.certificate, extras.certificate_bytes)
                             : Json(nullptr);
-  json["trajectory"] = trajectory_json(arm.rows());
+  json["trajectory"] = trajectory_json(arm.rows(), named_joints(arm.joint_names));
   json["partial"] = partial_json(arm);
   add_robot(json, arm, answer.warnings);
   return json;

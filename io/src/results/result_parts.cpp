@@ -110,21 +110,23 @@ Json diagnosis_json(const Diagnosis& diagnosis) {
       {"layers_known", diagnosis.layers_known}};
 }
 
-Json row_json(const TrajectoryRow& row, bool roll) {
-  Json json = {
-      {"s", row.s}, {"phi", row.phi}, {"branch", row.branch}, {"joints", joints_json(row)}};
+Json row_json(const TrajectoryRow& row, bool roll, std::size_t joints) {
+  Json json = {{"s", row.s},
+               {"phi", row.phi},
+               {"branch", row.branch},
+               {"joints", joints_json(row.q, joints)}};
   if (roll) json["roll"] = row.roll;
   return json;
 }
 
-Json joints_json(const TrajectoryRow& row) {
-  return std::vector<double>(row.q.data(), row.q.data() + kDof);
+Json joints_json(const Config& q, std::size_t joints) {
+  return std::vector<double>(q.data(), q.data() + joints);
 }
 
-Json trajectory_json(const std::vector<TrajectoryRow>& trajectory) {
+Json trajectory_json(const std::vector<TrajectoryRow>& trajectory, std::size_t joints) {
   Json rows = Json::array();
   const bool roll = any_rolls(trajectory);
-  for (const TrajectoryRow& row : trajectory) rows.push_back(row_json(row, roll));
+  for (const TrajectoryRow& row : trajectory) rows.push_back(row_json(row, roll, joints));
   return rows;
 }
 
@@ -213,12 +215,15 @@ void add_robot(Json& json, const ArmAnswer& arm, const std::vector<std::string>&
                          {"reduced", reduced_json(arm.reduced_pairs)}};
   json["held"] = held_json(arm.held);
   json["warnings"] = warnings;
-  json["joint_names"] = arm.joint_names;
+  json["joint_names"] = std::vector<std::string>(
+      arm.joint_names.begin(),
+      arm.joint_names.begin() + static_cast<std::ptrdiff_t>(named_joints(arm.joint_names)));
 }
 
 Json partial_json(const ArmAnswer& arm) {
-  return trajectory_json(arm.partial.empty() ? std::vector<TrajectoryRow>()
-                                             : arm.partial.front().rows);
+  return trajectory_json(
+      arm.partial.empty() ? std::vector<TrajectoryRow>() : arm.partial.front().rows,
+      named_joints(arm.joint_names));
 }
 
 void add_measures(Json& json, const Measures& result, bool solved) {

@@ -33,10 +33,12 @@ Json or_null(const std::optional<T>& value) {
 /// Returns the number of a waypoint; null for -1.
 [[nodiscard]] Json waypoint_json(int waypoint);
 
-[[nodiscard]] Json joints_json(const TrajectoryRow& row);
-/// Returns a row of a trajectory, with its roll if `roll` is true.
-[[nodiscard]] Json row_json(const TrajectoryRow& row, bool roll);
-[[nodiscard]] Json trajectory_json(const std::vector<TrajectoryRow>& trajectory);
+/// Returns the first `joints` coordinates of a configuration.
+[[nodiscard]] Json joints_json(const Config& q, std::size_t joints);
+/// Returns a row of a trajectory, with its roll if `roll` is true, and the first `joints` joints.
+[[nodiscard]] Json row_json(const TrajectoryRow& row, bool roll, std::size_t joints);
+[[nodiscard]] Json trajectory_json(const std::vector<TrajectoryRow>& trajectory,
+                                   std::size_t joints);
 
 /// Returns what rows come near to, at a glance. What is null was not asked for, or does not apply,
 /// as where there are no rows.

@@ -26,7 +26,8 @@ Json arm_json(const ArmAnswer& arm) {
   add_measures(json, run, solved);
   json["counters"] = counters_json(arm.counters);
   json["diagnosis"] = run.diagnosis ? diagnosis_json(*run.diagnosis) : Json(nullptr);
-  json["trajectory"] = solved ? trajectory_json(arm.rows()) : Json(nullptr);
+  json["trajectory"] =
+      solved ? trajectory_json(arm.rows(), named_joints(arm.joint_names)) : Json(nullptr);
   json["partial"] = partial_json(arm);
   add_robot(json, arm, arm.warnings);
   return json;

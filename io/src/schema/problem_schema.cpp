@@ -17,7 +17,7 @@ Schema numbers(std::size_t count, const Range& range) {
 /// Returns the schema of a number for all joints or a list with one for each; null counts as a
 /// missing key.
 Schema of_joints(const Range& range) {
-  return or_null(either(number(range), numbers(kDof, range)));
+  return or_null(either(either(number(range), numbers(kDof, range)), numbers(kDof - 1, range)));
 }
 
 Schema scale() {
@@ -101,16 +101,17 @@ Schema robot() {
 
 /// Returns the schema of `joints`: one number for each, base to tip.
 Schema configuration() {
-  return section("", {{"joints", numbers(kDof, kFinite), "rad", required(),
-                       "base to tip; of six joints the roll of the tool is the seventh"}});
+  return section(
+      "", {{"joints", either(numbers(kDof, kFinite), numbers(kDof - 1, kFinite)), "rad", required(),
+            "base to tip; of six joints with `path.roll` the roll of the tool is the seventh"}});
 }
 
 /// Returns the schema of `joints` where an arm of six joints may leave out the roll of its tool.
 Schema configuration_without_roll() {
   return section(
       "", {{"joints", either(numbers(kDof, kFinite), numbers(kDof - 1, kFinite)), "rad", required(),
-            "base to tip; of six joints the roll of the tool is the seventh, which may "
-            "be left out"}});
+            "base to tip; of six joints with `path.roll` the roll of the tool is the seventh, "
+            "which may be left out"}});
 }
 
 Schema path() {
@@ -299,7 +300,9 @@ Schema cost() {
                   {"metric", one_of({"l2", "max", "time"}), "", otherwise("l2"),
                    "what a step costs: `l2` sqrt(Σ (w Δq)²), `max` max w |Δq|, `time` max |Δq| / v "
                    "with the velocities of the URDF"},
-                  {"weights", either(numbers(kDof, kNonNegative), map(number(kNonNegative))),
+                  {"weights",
+                   either(either(numbers(kDof, kNonNegative), map(number(kNonNegative))),
+                          numbers(kDof - 1, kNonNegative)),
                    "per rad or m", in_words("1 each, that of the roll of six-joint arms 0"),
                    "w, base to tip: each 0 or from 1e-6 to 1e6; or, `{joint_1: 2}`, of the joints "
                    "that are named"},

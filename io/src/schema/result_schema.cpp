@@ -11,6 +11,12 @@ Schema numbers(std::size_t count) {
   return list(number(), count);
 }
 
+/// Returns the schema of one number for each joint: seven, or six of an arm of six joints whose
+/// tool may not turn.
+Schema joint_numbers() {
+  return either(numbers(kDof), numbers(kDof - 1));
+}
+
 Schema::Key key(const char* name, Schema value, const char* meaning, const char* unit = "") {
   return {name, std::move(value), unit, required(), meaning};
 }
@@ -134,7 +140,9 @@ Schema lattice() {
           key_of_some("window", integer(), "steps of arm angle between neighbours, of S-R-S arms"),
           key_of_some("rolls", integer(),
                       "of S-R-S arms with `path.roll`: turns of the tool that are told apart"),
-          key_of_some("arcs", integer(), "of self-motion, in all layers, of other arms"),
+          key_of_some("arcs", integer(),
+                      "of self-motion, in all layers, of other arms; of six joints without a roll "
+                      "IK solutions"),
           key_of_some("knot_bound", or_null(number()),
                       "no path through nodes of these layers costs less, whatever layers between "
                       "have nodes besides; `null` where nodes have costs or are only near their "
@@ -407,7 +415,7 @@ Schema rows() {
       "", {key("s", number(), "along the path", "m"),
            key("phi", number(), "as in the [CSV](#trajectory-csv)", "rad"),
            key("branch", integer(), "as in the CSV"),
-           key("joints", numbers(kDof), "base to tip", "rad"),
+           key("joints", joint_numbers(), "base to tip", "rad"),
            key_of_some("roll", number(), "as in the CSV, where the tool stands turned", "rad")}));
 }
 
@@ -529,7 +537,7 @@ std::vector<Schema::Key> part_keys() {
           "it (`given`), the joint that it `mimics` or `null`; what is said of paths is said "
           "with them there"),
       key("warnings", list(text()), "e.g. open meshes, merged waypoints"),
-      key("joint_names", list(text(), kDof), "base to tip"),
+      key("joint_names", either(list(text(), kDof), list(text(), kDof - 1)), "base to tip"),
   };
 }
 
@@ -568,7 +576,7 @@ Schema parts_of_job() {
            list(section("", {key_of_some("s", number(), "along the run", "m"),
                              key_of_some("phi", number(), "as in the CSV", "rad"),
                              key_of_some("branch", integer(), "as in the CSV"),
-                             key("joints", numbers(kDof), "base to tip", "rad"),
+                             key("joints", joint_numbers(), "base to tip", "rad"),
                              key_of_some("roll", number(), "as in the CSV", "rad"),
                              key("process", boolean(), "whether it is on the stroke itself")})),
            "of strokes `s`, `phi`, `branch`, `joints`, `roll` where the tool stands turned, "
@@ -651,7 +659,7 @@ Schema advice_on_job() {
        key("strokes", list(text()), "that are left out, run backwards, or have a longer line"),
        key("length", or_null(number()),
            "of `approach`, `retract` and `lines` (both, at all strokes)", "m"),
-       key("home", or_null(numbers(kDof)), "of `home`: joints", "rad"),
+       key("home", or_null(joint_numbers()), "of `home`: joints", "rad"),
        key("outcome", one_of({"solved", "further", "no_help", "unknown"}),
            "`unknown`: no time left"),
        key("cost", or_null(number()), "of `solved`")}));

@@ -289,7 +289,11 @@ CertificateCheck verify_certificate(const PreparedRobot& robot, const PathProble
   robot.require_prepared_for(problem);
   const Chain& chain = robot.arm().chain;
   const ToolPath path = path_within_scale(problem, chain, budget);
-  std::shared_ptr<Lattice> lattice = make_lattice(chain, robot.arm_class(), path, problem, budget);
+  // That of the last search: a caller's check keeps it on the first lattice (TaskLattice::second).
+  std::shared_ptr<Lattice> lattice;
+  if (!check)
+    lattice = make_lattice_past_singularity(chain, robot.arm_class(), path, problem, budget);
+  if (!lattice) lattice = make_lattice(chain, robot.arm_class(), path, problem, budget);
   for (const std::set<int>& steps : certificate.halvings) {
     std::unique_ptr<Lattice> finer;
     if (steps.empty() || *steps.begin() < 0 || *steps.rbegin() + 1 >= lattice->layers() ||

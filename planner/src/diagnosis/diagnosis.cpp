@@ -219,11 +219,9 @@ class Inspector {
     bool singular = false;
     std::map<int, std::pair<std::int64_t, Cause>> released;  // by limit, if it alone removes a node
     std::optional<Cause> several;
-    for (int slot = 0; slot < lattice_.slots(layer); ++slot) {
-      if (slot % 64 == 0) budget_.poll();
-      const Lattice::NodeFault fault = lattice_.fault(layer, slot);
+    const auto consider = [&](const Lattice::NodeFault& fault) {
       singular = singular || fault.status == NodeStatus::kSingular;
-      if (fault.status != NodeStatus::kLimit) continue;
+      if (fault.status != NodeStatus::kLimit) return;
       constraints_.count_nodes(1);
       Cause worst;  // of this node
       int limit = 0;
@@ -241,7 +239,12 @@ class Inspector {
         several = worst;
         several->other_joints = true;
       }
+    };
+    for (int slot = 0; slot < lattice_.slots(layer); ++slot) {
+      if (slot % 64 == 0) budget_.poll();
+      consider(lattice_.fault(layer, slot));
     }
+    for (const Lattice::NodeFault& fault : lattice_.beyond_limits(layer)) consider(fault);
     const auto most = std::max_element(
         released.begin(), released.end(),
         [](const auto& a, const auto& b) { return a.second.first < b.second.first; });

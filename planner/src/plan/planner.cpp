@@ -303,14 +303,16 @@ struct Planner::Impl {
                PlanResult& result) {
     was_eager = is_eager(options);
     // The cost of a state by the caller's hook may depend on joint 7, which must then be free.
-    const bool rests = layout->task->coaxial() && !options.hooks.cost;
-    if (rests || !layout->task->coaxial()) {
-      Found found = search_knots(layout->first, rule, options, budget, result);
-      found = tell_turns_apart(std::move(found), rule, options, budget, result);
-      if (!layout->task->coaxial() || !found.decided || !found.outcome.path.empty()) return found;
+    std::optional<Found> none;
+    if (!(layout->task->coaxial() && options.hooks.cost)) {
+      none = search_knots(layout->first, rule, options, budget, result);
+      none = tell_turns_apart(*std::move(none), rule, options, budget, result);
+      if (!none->decided || !none->outcome.path.empty()) return *std::move(none);
     }
-    const auto free = [&] { return layout->task->free_lattice(*robot, problem, budget); };
-    layout->second = Searched{single_use ? free() : layout->lattices.free_lattice(free), nullptr};
+    const auto make = [&] { return layout->task->second(*robot, problem, budget); };
+    const std::shared_ptr<Lattice> second = single_use ? make() : layout->lattices.second(make);
+    if (!second) return *std::move(none);
+    layout->second = Searched{second, nullptr};
     result.lattice = info_of(*layout->second->lattice, robot->arm_class());
     Found found = search_knots(*layout->second, rule, options, budget, result);
     return tell_turns_apart(std::move(found), rule, options, budget, result);

@@ -46,8 +46,10 @@ class Adviser {
     hold_elsewhere();
     if (!problem_.start && !problem_.end) try_once({.change = Change::kTurnedOver});
     // Last, because it changes the process as well.
-    if (!problem_.roll && !problem_.limits.step_error && trial_.prepare().arm_class().srs)
-      try_once({.change = Change::kFreeRoll});
+    if (!problem_.roll && !problem_.limits.step_error) {
+      const ArmClass& arm = trial_.prepare().arm_class();
+      if (arm.srs || !arm.redundant) try_once({.change = Change::kFreeRoll});
+    }
     try_all();
     two_objects();
     std::stable_sort(advice_.begin(), advice_.end(), [](const Advice& a, const Advice& b) {

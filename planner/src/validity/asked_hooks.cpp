@@ -59,7 +59,9 @@ void AskedCost::costs(std::span<const Config> states, std::span<double> costs) {
     const std::string text = formatted(
         "': costs[%zu] is %g: allowed is a number from 0 to %g; the state is", k, costs[k], most);
     std::string message = "state cost '" + cost_->name() + text;
-    for (const double q : states[k].coordinates()) message += formatted(" %.9g", q);
+    for (const double q :
+         states[k].head(static_cast<Eigen::Index>(lattice_->chain().coordinates())))
+      message += formatted(" %.9g", q);
     throw InvalidArgument(message);
   }
 }

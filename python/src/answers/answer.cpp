@@ -93,7 +93,8 @@ void bind_words_of_arms(py::class_<T>& type) {
           "given", [](const Arm& x) { return x.found().given; },
           "Whether the motion of this arm was given.")
       .word(
-          "joint_names", [](const Arm& x) { return x.found().joint_names; }, "Base to tip.")
+          "joint_names", [](const Arm& x) { return names_in(x.found().joint_names); },
+          "Base to tip.")
       .word(
           "held",
           [](const Arm& x) {

@@ -143,7 +143,8 @@ void require_strokes(const Answer& answer, const char* name);
 [[nodiscard]] py::array_t<double> joints_of(const Trajectory& trajectory);
 /// Returns the names that a caller gives to joints, or those of seven unnamed ones. Throws
 /// ValueError for another number of names.
-[[nodiscard]] io::JointNames to_joint_names(const std::vector<std::string>& names);
+[[nodiscard]] io::JointNames to_joint_names(const std::vector<std::string>& names,
+                                            std::size_t width = kDof);
 
 /// Throws ValueError if this build has no pages.
 void require_pages();

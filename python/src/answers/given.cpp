@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "problems/problem.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/messages/nearest_name.hpp"
@@ -71,8 +72,17 @@ swivel::Problem executed_by(const swivel::Problem& problem, const std::vector<Ru
   return with_lift_offs(problem, places);
 }
 
+/// Throws InvalidArgument for rows with another number of joints than the arm of a problem has.
+void require_joints_of(const swivel::Problem& problem, const Trajectory& rows) {
+  const std::size_t given = named_joints(rows.joint_names), own = coordinates_of(problem);
+  if (given != own)
+    throw InvalidArgument("rows: of " + std::to_string(given) + " joints: allowed are the arm's " +
+                          std::to_string(own));
+}
+
 GivenAnswer of_parts(const swivel::Problem& problem, const std::vector<Part>& parts) {
   if (!has_strokes(problem)) refuse(problem, "parts of strokes");
+  for (const Part& part : parts) require_joints_of(problem, part.trajectory);
   std::vector<RunInRows> runs;
   for (const Part& part : parts) {
     const std::vector<TrajectoryRow>& rows = *part.trajectory.rows;
@@ -182,6 +192,7 @@ GivenAnswer given_answer(const swivel::Problem& problem, const GivenRows& rows) 
   if (const auto* const parts = std::get_if<std::vector<Part>>(&rows))
     return of_parts(problem, *parts);
   if (has_strokes(problem) || problem.arms.size() != 1) refuse(problem, "a trajectory of one path");
+  require_joints_of(problem, std::get<Trajectory>(rows));
   GivenAnswer given{problem, {}};
   add(given, *std::get<Trajectory>(rows).rows);
   return given;

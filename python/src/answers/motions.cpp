@@ -42,8 +42,15 @@ template <class Number>
 py::array_t<Number> timed_column(const Rows& rows, Number TimedRow::*member) {
   return column(rows, rows->empty() ? nullptr : &(rows->front().*member));
 }
-py::array_t<double> timed_joints(const Rows& rows, const Config TimedRow::*member) {
-  return column(rows, rows->empty() ? nullptr : (rows->front().*member).data(), kDof);
+/// Returns the number of joints of the motion's arm.
+std::size_t joints_of(const Motion& motion, const char* name) {
+  return named_joints(joint_names_of(motion, name));
+}
+py::array_t<double> timed_joints(const Motion& motion, const char* name,
+                                 const Config TimedRow::*member) {
+  const Rows rows = rows_of(motion, name);
+  return column(rows, rows->empty() ? nullptr : (rows->front().*member).data(),
+                static_cast<py::ssize_t>(joints_of(motion, name)));
 }
 template <class Number>
 py::array_t<Number> placed_column(const Rows& rows, Number TrajectoryRow::*member) {
@@ -62,8 +69,9 @@ Typed<"dict[str, _Array]"> peaks_of(const Motion& motion) {
   const char* const names[] = {"speed", "acceleration", "jerk"};
   py::dict peaks;
   for (std::size_t k = 0; k < 3; ++k) {
-    py::array_t<double> ratios(kDof);
-    for (std::size_t j = 0; j < kDof; ++j)
+    const std::size_t joints = joints_of(motion, "peaks");
+    py::array_t<double> ratios(static_cast<py::ssize_t>(joints));
+    for (std::size_t j = 0; j < joints; ++j)
       ratios.mutable_at(j) = arm_of(motion, "peaks").peaks[k][j].ratio;
     peaks[names[k]] = ratios;
   }
@@ -302,19 +310,19 @@ void bind_samples(py::class_<Motion>& type) {
           "joints",
           [](const Motion& x) {
             const Rows rows = rows_of(x, "joints");
-            return column(rows, rows->empty() ? nullptr : rows->front().row.q.data(), kDof);
+            return column(rows, rows->empty() ? nullptr : rows->front().row.q.data(),
+                          static_cast<py::ssize_t>(joints_of(x, "joints")));
           },
           "(m, 7), rad.")
       .def_property_readonly(
-          "velocities",
-          [](const Motion& x) { return timed_joints(rows_of(x, "velocities"), &TimedRow::v); },
+          "velocities", [](const Motion& x) { return timed_joints(x, "velocities", &TimedRow::v); },
           "(m, 7), rad/s.")
       .def_property_readonly(
           "accelerations",
-          [](const Motion& x) { return timed_joints(rows_of(x, "accelerations"), &TimedRow::a); },
+          [](const Motion& x) { return timed_joints(x, "accelerations", &TimedRow::a); },
           "(m, 7), rad/s^2.")
-      .def_property_readonly("joint_names",
-                             [](const Motion& x) { return joint_names_of(x, "joint_names"); })
+      .def_property_readonly(
+          "joint_names", [](const Motion& x) { return names_in(joint_names_of(x, "joint_names")); })
       .def_property_readonly("part", &part_of,
                              "Of strokes (m,), number of the part to which each row leads, from 0.")
       .def_property_readonly(

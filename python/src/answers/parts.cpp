@@ -25,12 +25,10 @@ std::string part_words(const Part& part) {
 /// Returns rows that are given as a Trajectory, or as the joints alone.
 Trajectory to_trajectory(const py::object& rows) {
   if (py::isinstance<Trajectory>(rows)) return rows.cast<Trajectory>();
-  const py::array_t<double> joints = to_joints(rows, "rows");
-  auto all =
-      std::make_shared<std::vector<TrajectoryRow>>(static_cast<std::size_t>(joints.shape(0)));
-  for (py::ssize_t k = 0; k < joints.shape(0); ++k)
-    (*all)[static_cast<std::size_t>(k)].q = Config::of(joints.data(k, 0));
-  return {std::move(all), {}};
+  const Postures joints = to_joints(rows, "rows", 0);
+  auto all = std::make_shared<std::vector<TrajectoryRow>>(joints.rows.size());
+  for (std::size_t k = 0; k < joints.rows.size(); ++k) (*all)[k].q = joints.rows[k];
+  return {std::move(all), joints.width < kDof ? to_joint_names({}, joints.width) : JointNames()};
 }
 
 void bind_part(py::module_& m) {

@@ -24,14 +24,15 @@ bool last_joint_is_roll(const io::JointNames& names) {
 Trajectory make_trajectory(const ArrayLike& joints, const ArrayLike& s, const ArrayLike& phi,
                            const ArrayLike& branch, const std::vector<std::string>& names,
                            const ArrayLike& roll) {
-  const auto q = to_joints(joints, "joints");
+  const Postures q = to_joints(joints, "joints", 0);
+  const auto count = static_cast<py::ssize_t>(q.rows.size());
   using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
   const auto numbers = [&](py::handle source, const char* name) {
     const Doubles array = Doubles::ensure(source);
-    if (!array || array.ndim() != 1 || array.shape(0) != q.shape(0)) {
+    if (!array || array.ndim() != 1 || array.shape(0) != count) {
       PyErr_Clear();
       throw py::value_error(std::string(name) + ": allowed is one number for each of the " +
-                            std::to_string(q.shape(0)) + " rows");
+                            std::to_string(count) + " rows");
     }
     return array;
   };
@@ -39,10 +40,10 @@ Trajectory make_trajectory(const ArrayLike& joints, const ArrayLike& s, const Ar
   const Doubles angle = phi.is_none() ? Doubles() : numbers(phi, "phi"),
                 label = branch.is_none() ? Doubles() : numbers(branch, "branch"),
                 turn = roll.is_none() ? Doubles() : numbers(roll, "roll");
-  auto rows = std::make_shared<Rows>(static_cast<std::size_t>(q.shape(0)));
-  for (py::ssize_t k = 0; k < q.shape(0); ++k) {
+  auto rows = std::make_shared<Rows>(q.rows.size());
+  for (py::ssize_t k = 0; k < count; ++k) {
     TrajectoryRow& row = (*rows)[static_cast<std::size_t>(k)];
-    row.q = Config::of(q.data(k, 0));
+    row.q = q.rows[static_cast<std::size_t>(k)];
     row.s = along.at(k);
     if (!phi.is_none()) row.phi = angle.at(k);
     if (!roll.is_none()) row.roll = turn.at(k);
@@ -54,7 +55,7 @@ Trajectory make_trajectory(const ArrayLike& joints, const ArrayLike& s, const Ar
       row.branch = static_cast<int>(value);
     }
   }
-  Trajectory made{std::move(rows), to_joint_names(names)};
+  Trajectory made{std::move(rows), to_joint_names(names, q.width)};
   if (!roll.is_none() && last_joint_is_roll(made.joint_names))
     throw py::value_error("roll: is the last joint of these rows already: allowed is None");
   return made;
@@ -71,14 +72,16 @@ void save_trajectory(const Trajectory& trajectory, const std::filesystem::path& 
 
 py::array_t<double> joints_of(const Trajectory& trajectory) {
   const auto& rows = trajectory.rows;
-  return column(rows, rows->empty() ? nullptr : rows->front().q.data(), kDof);
+  return column(rows, rows->empty() ? nullptr : rows->front().q.data(),
+                static_cast<py::ssize_t>(named_joints(trajectory.joint_names)));
 }
 
-io::JointNames to_joint_names(const std::vector<std::string>& names) {
+io::JointNames to_joint_names(const std::vector<std::string>& names, std::size_t width) {
   io::JointNames all;
-  if (!names.empty() && names.size() != kDof)
-    throw py::value_error("joint_names: " + std::to_string(names.size()) + ": allowed are 7");
-  for (std::size_t k = 0; k < kDof; ++k)
+  if (!names.empty() && names.size() != width)
+    throw py::value_error("joint_names: " + std::to_string(names.size()) + ": allowed are " +
+                          std::to_string(width));
+  for (std::size_t k = 0; k < width; ++k)
     all[k] = names.empty() ? "joint_" + std::to_string(k + 1) : names[k];
   return all;
 }
@@ -91,7 +94,8 @@ void bind_rows(py::module_& m) {
       .def(py::init(&make_trajectory), py::arg("joints"), py::arg("s"), py::arg("phi") = py::none(),
            py::arg("branch") = py::none(), py::arg("joint_names") = std::vector<std::string>{},
            py::arg("roll") = py::none(),
-           "joints: (n, 7), rad. s: (n,), m along the path. phi: carried arm angle, rad, and "
+           "joints: (n, 7), or (n, 6) of six joints without a roll, rad. s: (n,), m along the "
+           "path. phi: carried arm angle, rad, and "
            "branch: 0 to 7, of S-R-S arms. roll: of seven-joint arms whose tool may turn, rad; the "
            "roll of six-joint arms is the last of the joints. All of these are 0 by default.")
       .def_property_readonly(
@@ -114,8 +118,9 @@ void bind_rows(py::module_& m) {
           "(n,), by how much the tool is turned about its z axis, rad; 0 where it may not turn.")
       .def_property_readonly(
           "joints", [](const Trajectory& t) { return joints_of(t); },
-          "(n, 7) float64, rad, base to tip.")
-      .def_readonly("joint_names", &Trajectory::joint_names)
+          "(n, 7) float64, or (n, 6) of six joints without a roll; rad, base to tip.")
+      .def_property_readonly("joint_names",
+                             [](const Trajectory& t) { return names_in(t.joint_names); })
       .def("save", &save_trajectory, py::arg("file"), "As CSV, docs/formats.md.")
       .def("__len__", [](const Trajectory& t) { return t.rows->size(); })
       .def("__repr__", [](const Trajectory& t) {

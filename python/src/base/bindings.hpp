@@ -8,24 +8,33 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/messages/nearest_name.hpp"
 #include "swivel/core/problem/path_problem.hpp"
 
 // Python changes a scene in place, so it must never be copied into a list.
 PYBIND11_MAKE_OPAQUE(std::vector<swivel::SceneObject>)
 
-/// Gives Python a Config as an array of the arm's coordinates, (7,). Arguments are read by
+namespace swivel::python {
+/// The seventh coordinate of a posture that has six numbers in Python. to_core() replaces it by 0
+/// where the arm has six joints and its tool may not turn, and refuses it elsewhere.
+inline constexpr double kNoSeventh = std::numeric_limits<double>::infinity();
+}  // namespace swivel::python
+
+/// Gives Python a Config as an array of the arm's coordinates, (7,) or (6,). Arguments are read by
 /// to_posture() and to_joints().
 template <>
 struct pybind11::detail::type_caster<swivel::Config> {
   static constexpr auto name = const_name("numpy.ndarray[numpy.float64[7, 1]]");
   static handle cast(const swivel::Config& q, return_value_policy, handle) {
-    return array_t<double>(swivel::kDof, q.data()).release();
+    const bool six = q[swivel::kDof - 1] == swivel::python::kNoSeventh;
+    return array_t<double>(six ? swivel::kDof - 1 : swivel::kDof, q.data()).release();
   }
 };
 
@@ -80,12 +89,21 @@ void require_unit(const Quaterniond& quaternion);
 /// Lets a tool that `robot` may turn freely about its z axis pass half turns between waypoints, as
 /// files do (io::choose_sides).
 void pass_half_turns(const Robot& robot, std::vector<Waypoint>& waypoints);
-/// Returns the joints of one posture, rad; nothing for None. Throws ValueError, with `name` as that
-/// of the argument, for another shape than (7,).
+/// Returns the arm of a robot. Throws InputError as build_arm() does.
+[[nodiscard]] ArmModel arm_of(const Robot& robot);
+/// Returns the joints of one posture, rad, of six numbers with kNoSeventh; nothing for None. Throws
+/// ValueError, with `name` as that of the argument, for another shape than (7,) or (6,).
 [[nodiscard]] std::optional<Config> to_posture(py::handle joints, const char* name);
-/// Returns joints as a contiguous (n, 7) float64 array, rad; (7,) is read as one row. Throws
-/// ValueError, with `what` as the name of the argument, for other shapes.
-[[nodiscard]] py::array_t<double> to_joints(py::handle source, const char* what);
+/// Returns the configurations of joints, (n, width) or one row (width,), rad; those of six numbers
+/// have 0 behind them. `width` 0: 7 or 6. Throws ValueError, with `what` as the name of the
+/// argument, for other shapes.
+struct Postures {
+  std::vector<Config> rows;
+  std::size_t width = kDof;  ///< numbers of a row
+};
+[[nodiscard]] Postures to_joints(py::handle source, const char* what, std::size_t width);
+/// Returns the names of joints that there are.
+[[nodiscard]] std::vector<std::string> names_in(const JointNames& names);
 
 /// Returns a read-only numpy array of one member of all rows, without a copy. `first` points at the
 /// member in the first row. Shape (n,), or (n, width) if width > 0.
@@ -180,6 +198,31 @@ class PlainStruct {
   template <class Member>
   PlainStruct& member(const char* name, Member T::*member, const char* doc) {
     class_.def_readwrite(name, member, doc);
+    names_->push_back(name);
+    return *this;
+  }
+  /// A member that is a number for each joint, seven or six (kNoSeventh).
+  PlainStruct& of_joints(const char* name, std::optional<std::array<double, kDof>> T::*member,
+                         const char* doc) {
+    class_.def_property(
+        name,
+        [member](const T& self) -> std::optional<std::vector<double>> {
+          const auto& numbers = self.*member;
+          if (!numbers) return {};
+          return std::vector<double>(numbers->begin(),
+                                     numbers->end() - (numbers->back() == kNoSeventh ? 1 : 0));
+        },
+        [member, name](T& self, const std::optional<std::vector<double>>& given) {
+          (self.*member).reset();
+          if (!given) return;
+          if (given->size() != kDof && given->size() + 1 != kDof)
+            throw py::value_error(std::string(name) + ": " + std::to_string(given->size()) +
+                                  " numbers: allowed are 7, or 6 of six joints without a roll");
+          auto& numbers = (self.*member).emplace();
+          numbers.back() = kNoSeventh;
+          std::copy(given->begin(), given->end(), numbers.begin());
+        },
+        doc);
     names_->push_back(name);
     return *this;
   }

@@ -43,7 +43,8 @@ bool same_places(const std::vector<SceneObject>& a, const std::vector<SceneObjec
 
 /// Gives an arm the rows of a motion; limits, resolution and cost are those of `like`. Throws
 /// ValueError for rows of other joints.
-void give(ArmTask& arm, const Robot& robot, const Trajectory& motion, const Task& like) {
+void give(ArmTask& arm, const Robot& robot, const Trajectory& motion, const PathProblem& like) {
+  const Task task = task_to_core(like, like);
   static_cast<Robot&>(arm) = robot;
   if (arm.roll) arm.roll = Roll{};  // the rows say how the tool stands turned
   const auto names =
@@ -52,9 +53,9 @@ void give(ArmTask& arm, const Robot& robot, const Trajectory& motion, const Task
   if (!std::equal(names.begin(), names.end(), motion.joint_names.begin(), motion.joint_names.end()))
     throw py::value_error("arms: the trajectory of '" + arm.name +
                           "' has other joints than its robot: allowed are rows of this robot");
-  arm.path().limits = like.limits;
-  arm.path().resolution = like.resolution;
-  arm.path().cost = like.cost;
+  arm.path().limits = task.limits;
+  arm.path().resolution = task.resolution;
+  arm.path().cost = task.cost;
   for (const TrajectoryRow& row : *motion.rows) arm.given.push_back(row.q);
 }
 
@@ -89,14 +90,16 @@ Typed<"dict[str, Problem]"> arms_of(const Problem& problem) {
   if (!problem.two) arms[""] = py::cast(problem);
   if (problem.two)
     for (const ArmTask& arm : problem.two->arms)
-      arms[arm.name.c_str()] = py::cast(Problem(problem_of_path(*problem.two, arm, arm.path())));
+      arms[arm.name.c_str()] =
+          py::cast(from_core(one_path(problem_of_path(*problem.two, arm, arm.path()))));
   return arms;
 }
 
 void save(const Problem& problem, const std::filesystem::path& file) {
   if (problem.two) throw InvalidArgument("save: a problem of two arms: allowed is one of one arm");
   const swivel::Problem core = to_core(problem);
-  const PathProblem path = problem;
+  PathProblem path = problem;
+  static_cast<Task&>(path) = task_to_core(path, problem);
   interruptible([&](const std::stop_token&) {
     if (is_path(core))
       io::save_problem(path, file);
@@ -226,7 +229,7 @@ Problem problem_of_arms(const ArmsByName& arms,
     if (py::isinstance<py::tuple>(value)) continue;  // its motion is given
     const auto& problem = path_of(value.cast<const Problem&>(), "arms");
     static_cast<Robot&>(arm) = problem;
-    static_cast<Task&>(arm.path()) = problem;
+    static_cast<Task&>(arm.path()) = task_to_core(problem, problem);
     if (!at_rows.empty()) arm.path().steps = steps_of(at_rows);
     if (first_problem == nullptr) {
       first_problem = &problem;
@@ -261,9 +264,83 @@ Problem problem_of_arms(const ArmsByName& arms,
   return made;
 }
 
+namespace {
+
+/// Seven numbers, one for each joint, that a problem has.
+struct OfJoints {
+  const char* name;
+  double* numbers;
+  bool rates = false;  ///< of what joints can do: the roll has as much as joint 6
+};
+
+void add(const char* name, std::optional<Config>& posture, std::vector<OfJoints>& all) {
+  if (posture) all.push_back({name, posture->data()});
+}
+void add(Limits& limits, std::vector<OfJoints>& all) {
+  for (const auto& [name, numbers] : {std::pair("joint_speed", &limits.joint_speed),
+                                      std::pair("joint_acceleration", &limits.joint_acceleration),
+                                      std::pair("joint_jerk", &limits.joint_jerk)})
+    if (*numbers) all.push_back({name, (*numbers)->data(), true});
+}
+void add(Cost& cost, std::vector<OfJoints>& all) {
+  if (cost.weights) all.push_back({"weights", cost.weights->data()});
+}
+std::vector<OfJoints> numbers_of(Task& task) {
+  std::vector<OfJoints> all;
+  add("start", task.start, all), add("end", task.end, all);
+  add(task.limits, all), add(task.cost, all);
+  return all;
+}
+std::vector<OfJoints> numbers_of(ArmTask& arm) {
+  std::vector<OfJoints> all;
+  add("home", arm.home, all), add(arm.transition_limits, all);
+  for (swivel::Stroke& stroke : arm.strokes)
+    for (const OfJoints& one : numbers_of(static_cast<Task&>(stroke))) all.push_back(one);
+  return all;
+}
+
+/// Brings numbers from Python's form to the planner's, task_to_core().
+void to_core(const Robot& robot, const std::vector<OfJoints>& all) {
+  if (all.empty()) return;
+  const bool six = arm_of(robot).chain.roll_fixed;
+  for (const OfJoints& of : all) {
+    double& last = of.numbers[kDof - 1];
+    if ((last == kNoSeventh) != six)
+      throw InvalidArgument(std::string(of.name) + ": " + (six ? "7" : "6") +
+                            " numbers: allowed are " + (six ? "6" : "7"));
+    if (six) last = of.rates ? of.numbers[kDof - 2] : 0;
+  }
+}
+
+/// Brings numbers from the planner's form to Python's, task_from_core().
+void from_core(const Robot& robot, const std::vector<OfJoints>& all) {
+  if (all.empty() || !arm_of(robot).chain.roll_fixed) return;
+  for (const OfJoints& of : all) of.numbers[kDof - 1] = kNoSeventh;
+}
+
+}  // namespace
+
+Task task_to_core(Task task, const Robot& robot) {
+  to_core(robot, numbers_of(task));
+  return task;
+}
+
+Task task_from_core(Task task, const Robot& robot) {
+  from_core(robot, numbers_of(task));
+  return task;
+}
+
+std::size_t coordinates_of(const swivel::Problem& problem) {
+  return arm_of(problem.arms.front()).chain.coordinates();
+}
+
 swivel::Problem to_core(const Problem& problem) {
   if (problem.two) return *problem.two;
-  if (!problem.strokes.list) return one_path(problem);
+  if (!problem.strokes.list) {
+    PathProblem path = problem;
+    static_cast<Task&>(path) = task_to_core(path, problem);
+    return one_path(std::move(path));
+  }
   swivel::Problem core;
   ArmTask& arm = core.arm();
   static_cast<Robot&>(arm) = problem;
@@ -286,6 +363,7 @@ swivel::Problem to_core(const Problem& problem) {
     made.feed = std::move(stroke.feed), made.end = stroke.end, made.closed = stroke.closed;
   }
   if (is_path(core)) throw InvalidArgument("strokes: name: allowed are non-empty names");
+  to_core(arm, numbers_of(arm));
   validate(core);
   return core;
 }
@@ -302,9 +380,10 @@ Problem from_core(swivel::Problem core) {
   problem.source = std::move(core.source), problem.scene = std::move(core.scene);
   problem.vary = std::move(core.vary);
   if (is_path(core)) {
-    static_cast<Task&>(problem) = arm.path();
+    static_cast<Task&>(problem) = task_from_core(arm.path(), arm);
     return problem;
   }
+  from_core(arm, numbers_of(arm));
   problem.limits = arm.transition_limits, problem.home = arm.home, problem.order = arm.order;
   problem.process_speed = arm.process_speed, problem.approach_speed = arm.approach_speed;
   problem.rapid = arm.rapid, problem.lift = arm.lift;
@@ -380,10 +459,8 @@ void bind_whole_problem(py::module_& m) {
       .def(
           "validate",
           [](const Problem& problem) {
-            if (problem.two || problem.strokes.list)
-              static_cast<void>(to_core(problem));
-            else
-              validate(static_cast<const PathProblem&>(problem));
+            const swivel::Problem core = to_core(problem);
+            if (is_path(core)) validate(problem_of_run(core, {0, false}));
           },
           "Raises InvalidArgument, which names stroke and member, for what no problem may have.")
       .def(

@@ -95,6 +95,15 @@ void serialize(A& archive, Problem& x) {
 /// Returns a problem for the planner, and the other way round. Strokes that say what all strokes
 /// say get it from the problem. Throws as StrokeList::all() and, of strokes, swivel::validate() do.
 [[nodiscard]] swivel::Problem to_core(const Problem& problem);
+/// Returns a task with its postures as the planner has them, seven numbers each. Throws
+/// InvalidArgument for a posture of six numbers, unless the robot's arm has six joints and its tool
+/// may not turn, and then for one of seven.
+[[nodiscard]] Task task_to_core(Task task, const Robot& robot);
+/// Returns a task with its postures as Python has them: of six numbers where the arm has six joints
+/// and its tool may not turn.
+[[nodiscard]] Task task_from_core(Task task, const Robot& robot);
+/// Returns the number of joints of a state of the problem's arm, the first of two.
+[[nodiscard]] std::size_t coordinates_of(const swivel::Problem& problem);
 [[nodiscard]] Problem from_core(swivel::Problem core);
 /// Returns the problem of one path. Throws InvalidArgument, with `what` as what was asked for, for
 /// another problem.

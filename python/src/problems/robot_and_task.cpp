@@ -205,19 +205,14 @@ Robot make_robot(std::shared_ptr<const RobotModel> model, const RobotKeywords& k
   return robot;
 }
 
-ArmModel arm_of(const Robot& robot) {
-  return build_arm(*robot.model, robot.base_link, robot.tip_link, robot.hold, robot.tool,
-                   robot.roll);
-}
-
 /// Returns the tool poses of joints, rad: (4, 4) for (7,), and (n, 4, 4) for (n, 7).
 py::array_t<double> tool_poses(const Robot& robot, const ArrayLike& joints) {
-  const py::array_t<double> states = to_joints(joints, "joints");
   const Chain chain = arm_of(robot).chain;
-  const py::ssize_t count = states.shape(0);
+  const std::vector<Config> states = to_joints(joints, "joints", chain.coordinates()).rows;
+  const auto count = static_cast<py::ssize_t>(states.size());
   py::array_t<double> poses({count, py::ssize_t{4}, py::ssize_t{4}});
   for (py::ssize_t k = 0; k < count; ++k) {
-    const Pose pose = chain.tool(Config::of(states.data(k, 0)));
+    const Pose pose = chain.tool(states[static_cast<std::size_t>(k)]);
     Eigen::Map<Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(poses.mutable_data(k, 0, 0)) =
         pose.matrix();
   }
@@ -227,8 +222,9 @@ py::array_t<double> tool_poses(const Robot& robot, const ArrayLike& joints) {
 
 py::array_t<double> joint_limits(const Robot& robot) {
   const Chain chain = arm_of(robot).chain;
-  py::array_t<double> limits({kDof, 2});
-  for (int j = 0; j < kDof; ++j) {
+  const auto joints = static_cast<int>(chain.coordinates());
+  py::array_t<double> limits({joints, 2});
+  for (int j = 0; j < joints; ++j) {
     const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
     const double infinity = std::numeric_limits<double>::infinity();
     limits.mutable_at(j, 0) = limit.continuous ? -infinity : limit.lower;
@@ -239,8 +235,11 @@ py::array_t<double> joint_limits(const Robot& robot) {
 
 std::string robot_words(const Robot& robot) {
   const PlanningArm arm = planning_arm(robot);
+  const char* const joints = robot.roll           ? "six joints and the roll"
+                             : arm.kind.redundant ? "seven joints"
+                                                  : "six joints";
   return "'" + robot.model->name + "', " + robot.base_link + " to " + robot.tip_link + ", " +
-         (robot.roll ? "six joints and the roll" : "seven joints") + ", " + arm.kind.method();
+         joints + ", " + arm.kind.method();
 }
 
 // --- scene
@@ -456,10 +455,14 @@ void bind_robot(py::module_& m) {
           },
           py::arg("name"))
       .def_property_readonly(
-          "joint_names", [](const Robot& robot) { return arm_of(robot).chain.joint_names; },
-          "Seven, base to tip; with `roll` the last one is the roll.")
-      .def_property_readonly("joint_limits", &joint_limits,
-                             "(7, 2): lower and upper, rad; infinite for continuous joints.")
+          "joint_names",
+          [](const Robot& robot) { return names_in(arm_of(robot).chain.joint_names); },
+          "Base to tip, seven; of six joints with `roll` the last one is the roll, without they "
+          "are "
+          "six.")
+      .def_property_readonly(
+          "joint_limits", &joint_limits,
+          "(7, 2), or (6, 2): lower and upper, rad; infinite for continuous joints.")
       .def_property_readonly(
           "method", [](const Robot& robot) { return planning_arm(robot).kind.method(); },
           "How solutions of a pose are found, in a line.")
@@ -621,14 +624,17 @@ void bind_task(py::module_& m) {
       .choice("edges", &Limits::edges, "EdgeMode, or its name.")
       .member("edge_clearance", &Limits::edge_clearance, "m, kept between layers.")
       .member("edge_tolerance", &Limits::edge_tolerance, "m, how finely that is proved.")
-      .member("joint_speed", &Limits::joint_speed, "rad/s, seven, instead of the URDF's.")
-      .member("joint_acceleration", &Limits::joint_acceleration, "rad/s^2, seven, of motions.")
-      .member("joint_jerk", &Limits::joint_jerk, "rad/s^3, seven, of motions.")
+      .of_joints("joint_speed", &Limits::joint_speed,
+                 "rad/s, one for each joint, instead of the URDF's.")
+      .of_joints("joint_acceleration", &Limits::joint_acceleration,
+                 "rad/s^2, one for each joint, of motions.")
+      .of_joints("joint_jerk", &Limits::joint_jerk, "rad/s^3, one for each joint, of motions.")
       .finish();
   PlainStruct<Cost>(m, "Cost", "What is summed over the steps of a path, as keywords.")
       .choice("metric", &Cost::metric, "CostMetric, or its name.")
-      .member("weights", &Cost::weights,
-              "Seven, each 0 or 1e-6 to 1e6; None: 1 each, that of the roll of six-joint arms 0.")
+      .of_joints("weights", &Cost::weights,
+                 "One for each joint, 0 or 1e-6 to 1e6; None: 1 each, that of the roll of "
+                 "six-joint arms 0.")
       .member("roll", &Cost::roll,
               "Per metre and rad that the tool stands turned from the waypoints' own; 0 or 1e-6 to "
               "1e6.")
@@ -712,13 +718,21 @@ void bind_task(py::module_& m) {
 
 }  // namespace
 
+ArmModel arm_of(const Robot& robot) {
+  return build_arm(*robot.model, robot.base_link, robot.tip_link, robot.hold, robot.tool,
+                   robot.roll);
+}
+
 std::optional<Config> to_posture(py::handle joints, const char* name) {
   if (joints.is_none()) return {};
   const Array array = to_array(joints, "joints: (7,), rad");
-  if (array.ndim() != 1 || array.shape(0) != kDof)
+  if (array.ndim() != 1 || (array.shape(0) != kDof && array.shape(0) != kDof - 1))
     throw py::value_error(std::string(name) + " of shape " + shape_text(array) +
-                          ": allowed is (7,), rad");
-  return Config::of(array.data());
+                          ": allowed is (7,), or (6,) of six joints without a roll, rad");
+  Config q;
+  std::copy_n(array.data(), array.shape(0), q.data());
+  if (array.shape(0) < kDof) q[kDof - 1] = kNoSeventh;
+  return q;
 }
 
 Waypoint to_waypoint(py::handle source, bool position_alone) {
@@ -812,13 +826,24 @@ py::array_t<double> from_waypoints(const std::vector<Waypoint>& waypoints) {
   return array;
 }
 
-py::array_t<double> to_joints(py::handle source, const char* what) {
-  Array array = to_array(source, "joints: (7,) or (n, 7), rad");
-  if (array.ndim() == 1 && array.shape(0) == kDof) array = array.reshape({1, kDof});
-  if (array.ndim() != 2 || array.shape(1) != kDof)
-    throw py::value_error(std::string(what) + " of shape " + shape_text(array) +
-                          ": allowed are (7,) and (n, 7)");
-  return array;
+Postures to_joints(py::handle source, const char* what, std::size_t width) {
+  const std::string one = width == 0 ? "7" : std::to_string(width);
+  const std::string allowed = "(" + one + ",) and (n, " + one + ")";
+  Array array = to_array(source, ("joints: " + allowed + ", rad").c_str());
+  const std::string shape = shape_text(array);
+  if (array.ndim() == 1) array = array.reshape({1, static_cast<int>(array.shape(0))});
+  const auto columns = array.ndim() == 2 ? static_cast<std::size_t>(array.shape(1)) : 0;
+  if (columns == 0 || (width != 0 ? columns != width : columns != kDof && columns != kDof - 1))
+    throw py::value_error(std::string(what) + " of shape " + shape + ": allowed are " +
+                          allowed + (width == 0 ? ", or 6 of six joints without a roll" : ""));
+  Postures postures{std::vector<Config>(static_cast<std::size_t>(array.shape(0))), columns};
+  for (std::size_t k = 0; k < postures.rows.size(); ++k)
+    std::copy_n(array.data(static_cast<py::ssize_t>(k), 0), columns, postures.rows[k].data());
+  return postures;
+}
+
+std::vector<std::string> names_in(const JointNames& names) {
+  return {names.begin(), names.begin() + static_cast<std::ptrdiff_t>(named_joints(names))};
 }
 
 void bind_problem(py::module_& m) {

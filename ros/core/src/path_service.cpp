@@ -198,11 +198,9 @@ class Request {
     if (moved < of_group.size())
       throw Refusal{kInvalidLinkName, "link_name '" + link_ + "' is not moved by all joints of '" +
                                           group_->name + "'"};
-    const bool rolls = service_.settings.roll > 0 && chain_.size() + 1 == kDof;
-    if (chain_.size() < kDof && !rolls)
-      throw Refusal{kFailure,
-                    "group '" + group_->name + "' has " + std::to_string(chain_.size()) +
-                        " joints: allowed are seven, or six and a roll of the tool (~roll)"};
+    if (chain_.size() + 1 < kDof)
+      throw Refusal{kFailure, "group '" + group_->name + "' has " + std::to_string(chain_.size()) +
+                                  " joints: allowed are six or seven"};
     for (const int k : chain_)
       if (!start_.known(k))
         throw Refusal{kRobotStateStale, "where joint '" + joint(k).name +
@@ -290,7 +288,8 @@ class Request {
     robot.model = service_.model;
     robot.base_link = service_.frame;
     robot.tip_link = link_;
-    if (chain_.size() < kDof) robot.roll = Roll{-service_.settings.roll, service_.settings.roll};
+    if (const double roll = service_.settings.roll; chain_.size() < kDof && roll > 0)
+      robot.roll = Roll{-roll, roll};
     std::string key = link_ + formatted("\n%d\n", options.avoid_collisions ? 1 : 0);
     for (std::size_t k = 0; k < model_.joints.size(); ++k) {
       const Joint& one = model_.joints[k];

@@ -10,8 +10,6 @@ namespace swivel {
 
 namespace {
 
-using JointNames = std::array<std::string, kDof>;
-
 constexpr std::array kRates{JointRate::kSpeed, JointRate::kAcceleration, JointRate::kJerk};
 
 std::string plural(std::size_t count, const char* noun) {

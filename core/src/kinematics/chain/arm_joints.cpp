@@ -44,6 +44,31 @@ struct Joints {
   }
 };
 
+/// Adds a line for every joint of the arm whose range is narrower than its own, since joints that
+/// mimic it cannot follow further.
+void add_narrowed(const RobotModel& robot, const Chain& chain, std::vector<std::string>& warnings) {
+  constexpr double kRounding = 1e-9;  // rad or m
+  for (std::size_t j = 0; j < kDof - (chain.roll ? 1 : 0); ++j) {
+    const int index = robot.find_joint(chain.joint_names[j]);
+    const JointLimit& limit = chain.limit[j];
+    if (index < 0 || limit.continuous) continue;
+    const Joint& joint = robot.joints[static_cast<std::size_t>(index)];
+    const bool turns_for_ever = joint.type == Joint::Type::kContinuous;
+    if (!turns_for_ever && limit.lower <= joint.lower + kRounding &&
+        limit.upper >= joint.upper - kRounding)
+      continue;
+    std::string followers;
+    for (const Chain::Follower& follower : chain.followers)
+      if (follower.leader == static_cast<int>(j))
+        followers.append(followers.empty() ? "'" : ", '").append(follower.name).append("'");
+    const char* const unit = joint.type == Joint::Type::kPrismatic ? " m" : " rad";
+    warnings.push_back(place(robot, joint) + ": joint '" + joint.name + "' is planned within " +
+                       range(limit.lower, limit.upper) + unit +
+                       (turns_for_ever ? "" : ", not " + range(joint.lower, joint.upper) + unit) +
+                       ": the limits of what mimics it allow no more (" + followers + ")");
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> file_warnings(const RobotModel& robot, const Chain& chain) {
@@ -62,6 +87,7 @@ std::vector<std::string> file_warnings(const RobotModel& robot, const Chain& cha
     warnings.push_back(soft.sentence(robot, "keeps", "keep",
                                      " the soft limits of a safety_controller: " + ranges +
                                          " (`limits.soft_limits: false` leaves them out)"));
+  add_narrowed(robot, chain, warnings);
   return warnings;
 }
 

@@ -361,8 +361,8 @@ void require_slides_allowed(const RobotModel& robot, const ArmJoints& arm, std::
 }
 
 /// Chooses the arm's joints: the last seven on the way to the tip that move and are neither held
-/// nor mimic another; with `roll` the last six where no seventh turns. Throws InputError where
-/// there are too few, or more of them slide than may.
+/// nor mimic another; the last six where there is no seventh, with `roll` where none turns. Throws
+/// InputError where there are too few, or more of them slide than may.
 ArmJoints choose_arm_joints(const RobotModel& robot, const KinematicPath& way,
                             const std::string& base_link, const std::string& tip_link,
                             const std::map<std::string, double>& hold,
@@ -377,18 +377,11 @@ ArmJoints choose_arm_joints(const RobotModel& robot, const KinematicPath& way,
       arm.size() >= kDof &&
       (!roll || robot.joints[static_cast<std::size_t>(arm[arm.size() - kDof])].type !=
                     Joint::Type::kPrismatic);
-  const std::size_t joints = seven || !roll ? kDof : kDof - 1;
-  if (!roll && arm.size() == kDof - 1)
-    fail_key(robot, "tip_link",
-             "the arm from '" + base_link + "' to '" + tip_link +
-                 "' has six joints: allowed with a tool that may turn about its own z axis: add "
-                 "`roll: free`, or [lower, upper] "
-                 "in rad, to `path`");
+  const std::size_t joints = seven ? kDof : kDof - 1;
   if (arm.size() < joints)
     fail_key(robot, "tip_link",
              "only " + std::to_string(arm.size()) + " movable joints that are not held between '" +
-                 base_link + "' and '" + tip_link +
-                 "': allowed are at least seven, or six with path.roll");
+                 base_link + "' and '" + tip_link + "': allowed are at least six");
   const std::size_t between = arm.size();
   arm.erase(arm.begin(), arm.end() - static_cast<std::ptrdiff_t>(joints));
   ArmJoints chosen{std::move(arm), seven};
@@ -465,13 +458,17 @@ void set_chain_joints(const RobotModel& robot, const KinematicPath& way,
 
 /// Makes the roll of the tool the seventh joint of an arm of six: X_6(q) Rot(z, -roll) is the
 /// waypoint where X_6 has turned the tool by the roll.
-void add_roll_joint(const RobotModel& robot, const Roll& roll, Chain& chain) {
+/// Without a range it stays 0.
+void add_roll_joint(const RobotModel& robot, const std::optional<Roll>& roll, Chain& chain) {
   chain.roll = true;
-  chain.joint_names.back() = robot.find_joint("roll") < 0 ? "roll" : "tool_roll";
+  chain.roll_fixed = !roll;
+  if (roll) chain.joint_names.back() = robot.find_joint("roll") < 0 ? "roll" : "tool_roll";
   chain.axis.back() = -chain.home.linear().col(2);
   chain.point.back() = chain.home.translation();
   chain.turn.back() = turn_about(chain.axis.back(), chain.point.back());
-  chain.limit.back() = {roll.lower, roll.upper, 0, roll.circle()};
+  // A roll that is fixed has no limit to come near to.
+  chain.limit.back() =
+      roll ? JointLimit{roll->lower, roll->upper, 0, roll->circle()} : JointLimit{0, 0, 0, true};
 }
 
 }  // namespace
@@ -550,8 +547,8 @@ Vector3d Chain::tool_point(const Config& cosine, const Config& sine) const {
 Eigen::Matrix<double, 6, kDof> Chain::jacobian(const Config& q) const {
   const auto G = displacements(q);
   const Vector3d tool_point = G[kDof] * home.translation();
-  Eigen::Matrix<double, 6, kDof> J;
-  for (std::size_t k = 0; k < kDof; ++k) {
+  Eigen::Matrix<double, 6, kDof> J = Eigen::Matrix<double, 6, kDof>::Zero();
+  for (std::size_t k = 0; k < coordinates(); ++k) {
     const Vector3d a = G[k].linear() * axis[k];
     const auto column = static_cast<Eigen::Index>(k);
     if (limit[k].slides) {
@@ -608,8 +605,8 @@ ArmModel build_arm(const RobotModel& robot, const std::string& base_link,
   chain.home = model.links[static_cast<std::size_t>(tip)].pose * tool;
   if (roll && arm.seven)
     chain.free_roll = roll;
-  else if (roll)
-    add_roll_joint(robot, *roll, chain);
+  else if (!arm.seven)
+    add_roll_joint(robot, roll, chain);
   return model;
 }
 

@@ -650,6 +650,7 @@ LockMethod lock_method(const Chain& chain) {
   constexpr int kSamples = 64;
   LockMethod result;
   result.roll = chain.roll;
+  result.roll_fixed = chain.roll_fixed;
   std::array<double, kDof> share{};
   for (int sample = 1; sample <= kSamples; ++sample) {
     Config q;
@@ -693,8 +694,10 @@ LockMethod lock_method(const Chain& chain) {
 
 std::string LockMethod::words() const {
   if (best < 0)
-    return "no closed form: no three neighbouring axes meet in a point or are parallel where one "
-           "joint is locked";
+    return std::string(
+               "no closed form: no three neighbouring axes meet in a point or are parallel") +
+           (roll_fixed ? " in a place that serves, or solutions lie too near to each other"
+                       : " where one joint is locked");
   const ClosedFormFit& fit = *by_joint[static_cast<std::size_t>(best)];
   const auto is_roll = [&](int j) { return roll && j + 1 == static_cast<int>(kDof); };
   std::string text = "closed form: axes ";
@@ -709,6 +712,7 @@ std::string LockMethod::words() const {
                 ? formatted(" within %.2g mrad", 1e3 * fit.deviation.angle)
                 : formatted(" within %.2g mm", 1e3 * fit.deviation.offset);
   }
+  if (roll_fixed) return text;
   text += is_roll(best) ? "; locks the roll" : "; locks joint " + std::to_string(best + 1);
   std::string others;
   for (int j = 0; j < kDof; ++j)

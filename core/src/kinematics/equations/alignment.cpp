@@ -35,11 +35,12 @@ std::vector<Alignment> alignments_of(const Chain& chain) {
     return (d - chain.axis[i].dot(d) * chain.axis[i]).norm();
   };
   const int slide = chain.slide();
+  const std::size_t joints = chain.coordinates();
   // What axes in a row have in common is of no use where one of them slides.
   const auto turn = [&](std::size_t first, std::size_t last) {
     return slide < static_cast<int>(first) || slide > static_cast<int>(last);
   };
-  for (std::size_t k = 0; k + 2 < kDof; ++k) {
+  for (std::size_t k = 0; k + 2 < joints; ++k) {
     if (!turn(k, k + 2)) continue;
     // Where axes k and k + 1 come nearest; do all three meet there?
     const Vector3d &a = chain.axis[k], &b = chain.axis[k + 1];
@@ -50,13 +51,13 @@ std::vector<Alignment> alignments_of(const Chain& chain) {
     if (distance(k + 1, meet) < kMeets && distance(k + 2, meet) < kMeets)
       add_alignments(chain, static_cast<int>(k), result);
   }
-  for (std::size_t k = 0; k + 2 < kDof; ++k) {
+  for (std::size_t k = 0; k + 2 < joints; ++k) {
     if (!turn(k, k + 2)) continue;
     if (chain.axis[k].cross(chain.axis[k + 1]).norm() > kMeets ||
         chain.axis[k].cross(chain.axis[k + 2]).norm() > kMeets)
       continue;
     // A fourth axis parallel to these three, beyond one joint.
-    if (k + 4 < kDof && turn(k, k + 4)) add_alignments(chain, static_cast<int>(k) + 2, result);
+    if (k + 4 < joints && turn(k, k + 4)) add_alignments(chain, static_cast<int>(k) + 2, result);
     if (k >= 2 && turn(k - 2, k + 2)) add_alignments(chain, static_cast<int>(k) - 2, result);
   }
   return result;

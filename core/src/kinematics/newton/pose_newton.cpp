@@ -15,6 +15,7 @@ constexpr double kSettled = 4e-6;  // rad: after so small a step the remaining e
 constexpr double kParallel = 1e-9;
 constexpr double kLongest = 1;  // rad: longest step
 constexpr int kLockedSteps = 8;
+constexpr int kRoll = kDof - 1;
 
 void put(const Vector3d& v, double (&to)[3]) {
   for (std::size_t r = 0; r < 3; ++r) to[r] = v[static_cast<Eigen::Index>(r)];
@@ -41,7 +42,7 @@ const NewtonKernels& newton_kernels() {
   return scalar_newton_kernels();
 }
 
-PoseNewton::PoseNewton(const Chain& chain) {
+PoseNewton::PoseNewton(const Chain& chain) : arm_(chain) {
   chain_.slide = chain.slide();
   Vector3d origin = chain.point[0], z = chain.axis[0];
   Vector3d x = z.unitOrthogonal();
@@ -138,6 +139,14 @@ void PoseNewton::tangents(std::span<const Config> q, const Pose& tool, Points& o
 
 std::optional<PoseNewton::Point> PoseNewton::nearest(const Config& start, const Pose& tool,
                                                      const Config& scale2, int steps) const {
+  if (arm_.roll_fixed) {
+    const double roll = start[kRoll];
+    NewtonTask one = task(tool, NewtonMove::kLocked, steps);
+    one.joint = kRoll;
+    one.value = &roll;
+    const auto point = run(one, start);
+    return point ? point : through_singular(start, tool);
+  }
   NewtonTask one = task(tool, NewtonMove::kNearest, steps);
   std::copy_n(scale2.data(), kDof, one.scale2);
   return run(one, start);
@@ -145,6 +154,21 @@ std::optional<PoseNewton::Point> PoseNewton::nearest(const Config& start, const 
 
 void PoseNewton::nearest(std::span<const Config> starts, const Pose& tool, const Config& scale2,
                          int steps, Points& out) const {
+  if (arm_.roll_fixed) {
+    std::vector<double> rolls;
+    for (const Config& start : starts) rolls.push_back(start[kRoll]);
+    NewtonTask all = task(tool, NewtonMove::kLocked, steps);
+    all.joint = kRoll;
+    all.value = rolls.data();
+    run(all, starts, out);
+    for (std::size_t k = 0; k < starts.size(); ++k) {
+      if (out.found[k] != 0) continue;
+      const auto point = through_singular(starts[k], tool);
+      out.found[k] = point ? 1 : 0;
+      if (point) out.q[k] = point->q, out.tangent[k] = point->tangent;
+    }
+    return;
+  }
   NewtonTask all = task(tool, NewtonMove::kNearest, steps);
   std::copy_n(scale2.data(), kDof, all.scale2);
   run(all, starts, out);
@@ -164,6 +188,28 @@ void PoseNewton::with_joint_at(std::span<const Config> starts, const Pose& tool,
   all.joint = joint;
   all.value = values.data();
   run(all, starts, out);
+}
+
+std::optional<PoseNewton::Point> PoseNewton::through_singular(const Config& start,
+                                                              const Pose& tool) const {
+  constexpr int kSteps = 40;
+  constexpr double kThere = 1e-10;  // m and rad
+  Config q = start;
+  for (int step = 0; step < kSteps; ++step) {
+    const Pose reached = arm_.tool(q);
+    const Eigen::AngleAxisd turn(tool.linear() * reached.linear().transpose());
+    Eigen::Matrix<double, 6, 1> error;
+    error << tool.translation() - reached.translation(), turn.angle() * turn.axis();
+    const double damping = error.squaredNorm();
+    if (damping <= kThere * kThere) return Point{q, Config::Zero()};
+    const Eigen::Matrix<double, 6, kDof> J = arm_.jacobian(q);
+    Eigen::Matrix<double, 6, 6> damped = J * J.transpose();
+    damped.diagonal().array() += damping;
+    const Config move = Config(J.transpose() * damped.ldlt().solve(error));
+    if (!(joint_squared_norm(move) < kLongest * kLongest)) return std::nullopt;
+    q += move;
+  }
+  return std::nullopt;
 }
 
 std::optional<PoseNewton::Point> PoseNewton::approach(const Config& start, const Pose& tool,

@@ -14,6 +14,9 @@ namespace swivel {
 /// 1955), finds the step and the null vector by one elimination, and computes one point in each
 /// lane of a vector. The position of a slide, m, takes the place of an angle, and so do its moves
 /// in norms.
+///
+/// Where the roll of an arm of six joints is fixed, it keeps its value in nearest(), whatever the
+/// scales are.
 class PoseNewton {
  public:
   explicit PoseNewton(const Chain& chain);
@@ -34,6 +37,8 @@ class PoseNewton {
   /// Returns the point within 1e-10 of the pose `tool` to which Newton steps of least norm, sum
   /// (scale_j dq_j)^2, lead from q; `scale2` has the squares of the scales. Returns none after
   /// `steps` steps, or where a step would be longer than 1 rad or the Jacobian loses rank.
+  /// Where the roll is fixed, a point at which it loses rank is reached by damped steps: it is one
+  /// of those nearest to q.
   [[nodiscard]] std::optional<Point> nearest(const Config& q, const Pose& tool,
                                              const Config& scale2, int steps) const;
   /// Returns the point of the pose `tool` to which Newton steps of least norm lead from a q that
@@ -44,6 +49,12 @@ class PoseNewton {
   /// bit, rad; none where Newton does not arrive in 8 steps.
   [[nodiscard]] std::optional<Point> with_joint_at(const Config& q, const Pose& tool, int joint,
                                                    double value) const;
+
+  /// Returns the point of the pose `tool` to which damped Newton steps lead from q, also where the
+  /// arm is singular there; its tangent is zero. Returns none after 40 steps, or where one would be
+  /// longer than 1 rad. Source: Levenberg & Marquardt, with the squared error as the damping
+  /// (Yamashita & Fukushima 2001).
+  [[nodiscard]] std::optional<Point> through_singular(const Config& q, const Pose& tool) const;
 
   // Functions for many points at once, in vector code. They give the same bits as one call for each
   // point.
@@ -77,6 +88,7 @@ class PoseNewton {
   static std::optional<Point> run(NewtonTask& task, const Config& start);
 
   NewtonChain chain_{};
+  Chain arm_;
 };
 
 }  // namespace swivel

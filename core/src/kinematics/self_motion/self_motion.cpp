@@ -179,8 +179,7 @@ Config SelfMotion::flipped(Config q) const {
 
 std::optional<Config> SelfMotion::image(const Config& q, const Pose& tool) const {
   const auto p = data_->newton.nearest(q, tool, data_->scale2, kImageSteps);
-  if (!p) return std::nullopt;
-  return p->q;
+  return p ? p->q : data_->image_past_alignment(q, tool);
 }
 
 namespace {
@@ -244,7 +243,7 @@ std::vector<std::optional<Config>> SelfMotion::images(std::span<const Config> q,
   }
   std::vector<std::optional<Config>> result(q.size());
   for (std::size_t k = 0; k < q.size(); ++k)
-    if (found.found[k] != 0) result[k] = found.q[k];
+    result[k] = found.found[k] != 0 ? found.q[k] : data_->image_past_alignment(q[k], tool);
   return result;
 }
 
@@ -264,6 +263,10 @@ std::optional<Config> SelfMotion::with_joint_at(const Config& q, const Pose& too
   Config found = p->q;
   if (!canonical(found)) return std::nullopt;
   return found;
+}
+
+bool SelfMotion::is_aligned(const Config& q) const {
+  return data_->aligned(q);
 }
 
 bool SelfMotion::canonical(Config& q) const {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -120,10 +121,21 @@ struct SelfMotionData {
     }
     return true;
   }
-  [[nodiscard]] bool aligned(const Config& q) const {
+  /// Whether three axes line up within an angle, rad.
+  [[nodiscard]] bool aligned(const Config& q, double within = self_motion::kSingular) const {
     return std::any_of(alignments.begin(), alignments.end(), [&](const Alignment& a) {
-      return std::abs(wrap_angle(q[a.joint] - a.angle)) < self_motion::kSingular;
+      return std::abs(wrap_angle(q[a.joint] - a.angle)) < within;
     });
+  }
+  /// Returns the configuration at a pose to which damped Newton steps lead from q, where three axes
+  /// line up at one of the two; none elsewhere.
+  [[nodiscard]] std::optional<Config> image_past_alignment(const Config& q,
+                                                           const Pose& tool) const {
+    constexpr double kFarthest = 0.35;  // rad: of q from an alignment
+    if (!aligned(q, kFarthest)) return std::nullopt;
+    const auto p = newton.through_singular(q, tool);
+    if (!p || !(aligned(q) || aligned(p->q))) return std::nullopt;
+    return p->q;
   }
   /// Whether the move passes over an alignment.
   [[nodiscard]] bool passes_alignment(const Config& q, const Config& move) const {

@@ -278,10 +278,11 @@ class Guesser {
     try {
       int root = link;
       while (leads_up_from(root)) root = robot_.joints[robot_.links[root].parent_joint].parent_link;
-      static_cast<void>(fit_srs(
+      const Chain chain =
           build_arm(robot_, robot_.links[root].name, robot_.links[link].name, {}, Pose::Identity())
-              .chain,
-          ""));
+              .chain;
+      if (chain.roll) return false;  // six joints
+      static_cast<void>(fit_srs(chain, ""));
       return true;
     } catch (const InputError&) {
       return false;

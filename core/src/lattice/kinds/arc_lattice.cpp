@@ -7,11 +7,14 @@
 #include <limits>
 #include <numeric>
 
+#include "kinematics/self_motion/pose_solutions.hpp"
 #include "lattice/given_posture.hpp"
 #include "lattice/kinds/arc_layers.hpp"
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/timeline.hpp"
+#include "swivel/core/kinematics/srs/arm_angle.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 
 namespace swivel {
@@ -75,7 +78,7 @@ ArcLattice::Data ArcLattice::build(const Chain& chain, const LockMethod& method,
                                    const ToolPath& whole, const PathProblem& problem,
                                    const Budget& budget) {
   const TraceSpan span("arcs");
-  const double knot = problem.resolution.knot_of_arcs();
+  const double knot = chain.roll_fixed ? 0 : problem.resolution.knot_of_arcs();
   Data result(knot > 0 ? Knots(whole, knots_along(whole, knot)) : Knots(whole));
   std::vector<std::vector<Point>> points;
   const ToolPath& path = result.knots.path();
@@ -88,6 +91,7 @@ ArcLattice::Data ArcLattice::build(const Chain& chain, const LockMethod& method,
   result.circles = bounded_circles(chain, motion);
   const ArcLayerMaker maker(chain, method, problem, motion);
   CarriedNodes before;
+  std::vector<std::int64_t> solutions;  // of each layer
   for (int i = 0; i < path.size(); ++i) {
     budget.poll();
     if (i + 1 == path.size() && ends_given) {  // the end is the only node, and continues none
@@ -100,6 +104,7 @@ ArcLattice::Data ArcLattice::build(const Chain& chain, const LockMethod& method,
     }
     ArcLayer made = maker.make(path.layer(i), before, i > 0 ? &points.back() : nullptr);
     result.arcs += made.arcs;
+    solutions.push_back(made.arcs);
     before = std::move(made.carried);
     if (i == 0 && problem.start) {
       // The start is the only node of layer 0; the others are transported as if there were none.
@@ -112,13 +117,18 @@ ArcLattice::Data ArcLattice::build(const Chain& chain, const LockMethod& method,
     }
     points.push_back(std::move(made.points));
   }
+  if (chain.roll_fixed)
+    maker.carry_back(path, solutions, points, problem.start || path.closed() ? 1 : 0);
   result.points = shared(std::move(points));
   return result;
 }
 
 ArcLattice::ArcLattice(const Chain& chain, const LockMethod& method, const ToolPath& path,
-                       const PathProblem& problem, const Budget& budget)
-    : ArcLattice(chain, method, problem, build(chain, method, path, problem, budget)) {}
+                       const PathProblem& problem, const Budget& budget, const SrsArm* srs)
+    : ArcLattice(chain, method, problem, build(chain, method, path, problem, budget)) {
+  data_.srs = srs;
+  if (srs) data_.planes = carried_planes(*srs, path, budget);
+}
 
 ArcLattice::ArcLattice(const Chain& chain, const LockMethod& method, const PathProblem& problem,
                        Data&& data)
@@ -131,7 +141,7 @@ ArcLattice::ArcLattice(const Chain& chain, const LockMethod& method, const PathP
 
 int arc_branch(const Chain& chain, const LockMethod& method, const Config& q) {
   const auto J = chain.jacobian(q);
-  const int left_out = method.best >= 0 ? method.best : 2;
+  const int left_out = chain.roll_fixed ? kDof - 1 : method.best >= 0 ? method.best : 2;
   Matrix6 rest;
   rest << J.leftCols(left_out), J.rightCols(kSix - left_out);
   const bool whole = rest.determinant() < 0;
@@ -160,12 +170,20 @@ double arc_angle(const Chain& chain, const Config& q) {
   return std::atan2(u.dot(up.cross(elbow)), up.dot(elbow));
 }
 
+TrajectoryRow ArcLattice::labelled(int layer, const Config& q) const {
+  const double s = path_of_rows().layer(layer).s;
+  if (data_.srs)
+    return {s, arm_angle(*data_.srs, data_.planes[static_cast<std::size_t>(layer)], q),
+            data_.srs->branch(q), q};
+  return {s, arc_angle(chain(), q), arc_branch(chain(), method_, q), q};
+}
+
 int ArcLattice::branch(int layer, int slot) const {
-  return arc_branch(chain(), method_, point(layer, slot).q);
+  return labelled(layer_of_rows(layer), point(layer, slot).q).branch;
 }
 
 double ArcLattice::phi(int layer, int slot) const {
-  return arc_angle(chain(), point(layer, slot).q);
+  return labelled(layer_of_rows(layer), point(layer, slot).q).phi;
 }
 
 int ArcLattice::next_on_arc(int layer, int slot) const {
@@ -189,8 +207,7 @@ std::vector<TrajectoryRow> ArcLattice::path_rows(const std::vector<int>& slots) 
   std::vector<TrajectoryRow> rows;
   const ToolPath& path = path_of_rows();
   for (const Config& q : path_joints(slots))
-    rows.push_back({path.layer(static_cast<int>(rows.size())).s, arc_angle(chain(), q),
-                    arc_branch(chain(), method_, q), q});
+    rows.push_back(labelled(static_cast<int>(rows.size()), q));
   count_from_waypoints(chain(), path, rows);
   return rows;
 }
@@ -203,6 +220,30 @@ void ArcLattice::slots_with_same_body_poses(int layer, int slot, unsigned groups
   const int node = slot_on_circles(layer, slot);
   for (int other = 0; other < slots(layer); ++other)
     if (slot_on_circles(layer, other) == node) out.push_back(other);
+}
+
+std::vector<Lattice::NodeFault> ArcLattice::beyond_limits(int layer) const {
+  std::vector<Config> points;
+  const Pose& tool = path().layer(layer).tool;
+  if (chain().roll_fixed)
+    points = PoseSolutions(chain(), method_).at(tool);
+  else
+    for (const SelfMotionArc& curve : data_.motion->curves(tool))
+      points.insert(points.end(), curve.q.begin(), curve.q.end());
+  std::vector<NodeFault> faults;
+  const double margin = limits().joint_margin - kLimitTolerance;
+  for (Config& q : points) {
+    if (data_.motion->canonical(q)) continue;
+    NodeFault fault{NodeStatus::kLimit, 0, q};
+    for (std::size_t j = 0; j < chain().coordinates(); ++j) {
+      const JointLimit& limit = chain().limit[j];
+      const double x = q[static_cast<Eigen::Index>(j)];
+      if (!continuous()[j] && !(x >= limit.lower + margin && x <= limit.upper - margin))
+        fault.joints |= static_cast<std::uint8_t>(1u << j);
+    }
+    if (fault.joints != 0) faults.push_back(fault);
+  }
+  return faults;
 }
 
 LatticeInfo ArcLattice::describe() const {

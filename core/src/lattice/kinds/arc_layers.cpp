@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 
+#include "kinematics/self_motion/self_motion_arcs.hpp"
 #include "swivel/core/base/angle.hpp"
 
 namespace swivel {
@@ -186,6 +187,22 @@ void add_at_roll(double roll, const SelfMotion& motion, const Pose& tool, const 
   }
 }
 
+/// Returns the slot of the node at which a node that was carried to this layer stands: the nearest,
+/// or, where no node is as near as `near` (rad, of each joint), one that is added. Returns -1 for
+/// joints outside the limits.
+int slot_of_image(const SelfMotion& motion, Config image, double near, std::vector<Point>& nodes) {
+  if (!motion.canonical(image)) return -1;
+  int nearest = -1;
+  double least = near;
+  for (std::size_t slot = 0; slot < nodes.size(); ++slot) {
+    const double away = difference(nodes[slot].q, image, -1).cwiseAbs().maxCoeff();
+    if (away < least) least = away, nearest = static_cast<int>(slot);
+  }
+  if (nearest >= 0) return nearest;
+  nodes.emplace_back().q = image;
+  return static_cast<int>(nodes.size()) - 1;
+}
+
 /// Fills a layer with nodes on its arcs.
 class Layer {
  public:
@@ -194,6 +211,10 @@ class Layer {
   /// Appends the nodes of one arc: its `images`, which are in the order of their lengths, less
   /// those that crowd, and nodes that fill the gaps between them.
   void place(const SelfMotionArc& arc, const std::vector<Image>& images);
+  /// Appends nodes that stand by themselves: where the arm is singular, a point of a layer's
+  /// solutions is on no arc. Those nearer than half a spacing to a node are dropped, and what they
+  /// continue goes on there.
+  void place_alone(const std::vector<Image>& images);
   /// Leaves out the points whose roll the layer does not allow. Returns the slot of each point that
   /// there was; -1 for those left out.
   std::vector<int> keep_window(const PathLayer& layer);
@@ -343,6 +364,19 @@ void Layer::place(const SelfMotionArc& arc, const std::vector<Image>& images) {
     if (image.source >= 0) link_to_source(arc, first, image);
 }
 
+void Layer::place_alone(const std::vector<Image>& images) {
+  for (const Image& image : images) {
+    const std::size_t before = points.size();
+    const int slot = slot_of_image(motion_, image.q, kCrowded * spacing_, points);
+    if (slot < 0) continue;
+    if (points.size() > before) lengths_.push_back(0);
+    if (image.source < 0) continue;
+    int& from = points[static_cast<std::size_t>(slot)].along[0];
+    if (from < 0) from = image.source;
+    continued_.emplace_back(image.source, slot);
+  }
+}
+
 void Layer::link(const CarriedNodes& before, std::vector<Point>& last) {
   for (const auto& [source, slot] : continued_) {
     if (!before.start)
@@ -389,10 +423,11 @@ void Layer::add_flipped(const CarriedNodes& before) {
     continued_.emplace_back(before.flipped_of(continued_[k].first), continued_[k].second + by);
 }
 
-/// The arcs of a layer, and the images on each of them.
+/// The arcs of a layer, the images on each of them, and those that lie on none, at singular places.
 struct ArcsOfLayer {
   std::vector<SelfMotionArc> arcs;
   std::vector<std::vector<Image>> images;
+  std::vector<Image> alone;
 };
 
 /// Sets the images on the arcs of a layer: nodes `moved` of the layer before, each where it comes
@@ -402,6 +437,7 @@ std::vector<Config> place_images(const SelfMotion& motion, const Pose& tool,
                                  const std::vector<std::optional<Config>>& moved,
                                  ArcsOfLayer& layer) {
   layer.images.assign(layer.arcs.size(), {});
+  layer.alone.clear();
   std::vector<Config> strays;
   Finder finder(layer.arcs);
   for (std::size_t k = 0; k < moved.size(); ++k) {
@@ -416,6 +452,7 @@ std::vector<Config> place_images(const SelfMotion& motion, const Pose& tool,
     const auto place = finder.find(*q);
     if (!place) {
       if (inside) strays.push_back(*q);
+      if (inside && motion.is_aligned(*q)) layer.alone.push_back({{}, *q, source});
       continue;
     }
     if (!inside) {
@@ -477,6 +514,7 @@ std::vector<int> numbers_below(std::size_t n) {
 
 ArcLayer ArcLayerMaker::make(const PathLayer& here, const CarriedNodes& before,
                              std::vector<Point>* last) const {
+  if (solutions_) return make_solutions(here, before, last);
   ArcsOfLayer found = arcs_of(motion_, method_, here.tool, before, least_);
   Layer layer(motion_, here.tool, problem_.resolution.arc_of_nodes());
   for (std::size_t k = 0; k < found.arcs.size(); ++k) {
@@ -488,6 +526,7 @@ ArcLayer ArcLayerMaker::make(const PathLayer& here, const CarriedNodes& before,
         [](const Image& a, const Image& b) { return a.place.length < b.place.length; });
     layer.place(found.arcs[k], found.images[k]);
   }
+  layer.place_alone(found.alone);
   ArcLayer made;
   std::vector<Config> nodes = joints_of(layer.points);
   std::vector<int> slot_of = numbers_below(nodes.size());
@@ -499,6 +538,69 @@ ArcLayer ArcLayerMaker::make(const PathLayer& here, const CarriedNodes& before,
                   false};
   made.points = std::move(layer.points);
   return made;
+}
+
+ArcLayer ArcLayerMaker::make_solutions(const PathLayer& here, const CarriedNodes& before,
+                                       std::vector<Point>* last) const {
+  const double near = kCrowded * problem_.resolution.arc_of_nodes();
+  ArcLayer made;
+  std::vector<Config> solutions;
+  for (Config& q : solutions_->at(here.tool))
+    if (motion_.canonical(q)) solutions.push_back(q);
+  std::sort(solutions.begin(), solutions.end(), less);
+  for (const Config& q : solutions) made.points.emplace_back().q = q;
+  const auto images = motion_.images(before.q, here.tool);
+  for (std::size_t k = 0; k < images.size(); ++k) {
+    if (!images[k]) continue;
+    const int slot = slot_of_image(motion_, *images[k], near, made.points);
+    if (slot < 0) continue;
+    const int source = !before.start ? before.slots[k] : k + 1 == images.size() ? 0 : -1;
+    if (source < 0) continue;
+    int& from = made.points[static_cast<std::size_t>(slot)].along[0];
+    if (from < 0) from = source;
+    (*last)[static_cast<std::size_t>(source)].along[1] = slot;
+  }
+  made.carried = carried_from(made.points);
+  made.arcs = static_cast<std::int64_t>(solutions.size());
+  return made;
+}
+
+void ArcLayerMaker::add_midway(const ToolPath& path, int layer,
+                               std::vector<std::vector<Point>>& points) const {
+  constexpr double kSame = 1e-3;  // rad
+  const auto at = static_cast<std::size_t>(layer);
+  const double before = path.layer(layer - 1).travel, after = path.layer(layer + 1).travel,
+               share = (path.layer(layer).travel - before) / (after - before);
+  std::vector<Config> midway;
+  for (const Point& a : points[at - 1])
+    for (const Point& b : points[at + 1]) {
+      const Config way = difference(b.q, a.q, -1);
+      if (way.cwiseAbs().maxCoeff() <= 2 * problem_.limits.joint_step)
+        midway.push_back(a.q + share * way);
+    }
+  for (const auto& q : motion_.images(midway, path.layer(layer).tool))
+    if (q) slot_of_image(motion_, *q, kSame, points[at]);
+}
+
+void ArcLayerMaker::carry_back(const ToolPath& path, const std::vector<std::int64_t>& solutions,
+                               std::vector<std::vector<Point>>& points, int first) const {
+  const double near = kCrowded * problem_.resolution.arc_of_nodes();
+  for (int i = path.size() - 2; i >= first; --i) {
+    auto &here = points[static_cast<std::size_t>(i)],
+         &after = points[static_cast<std::size_t>(i) + 1];
+    const auto images = motion_.images(joints_of(after), path.layer(i).tool);
+    for (std::size_t k = 0; k < images.size(); ++k) {
+      if (!images[k]) continue;
+      const int slot = slot_of_image(motion_, *images[k], near, here);
+      if (slot < 0) continue;
+      const auto from = static_cast<int>(k);
+      int &back = after[k].along[0], &ahead = here[static_cast<std::size_t>(slot)].along[1];
+      if (back < 0) back = slot;
+      if (ahead < 0) ahead = from;
+    }
+    if (i > 0 && std::ssize(here) > solutions[static_cast<std::size_t>(i)])
+      add_midway(path, i, points);
+  }
 }
 
 CarriedNodes ArcLayerMaker::carried_from(const std::vector<Point>& points) const {

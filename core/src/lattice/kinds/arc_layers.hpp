@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "kinematics/self_motion/pose_solutions.hpp"
 #include "swivel/core/kinematics/self_motion/self_motion.hpp"
 #include "swivel/core/lattice/explicit_lattice.hpp"
 
@@ -43,19 +44,38 @@ class ArcLayerMaker {
         // nodes drift with the tool as the cost would have it
         least_(problem.cost.metric == CostMetric::kL2 ? SelfMotion::Least::kNorm
                                                       : SelfMotion::Least::kLargest),
-        twins_(motion.has_flipped_arcs()) {}
+        twins_(motion.has_flipped_arcs() && !chain.roll_fixed) {
+    if (chain.roll_fixed) solutions_.emplace(chain, method);
+  }
   /// Returns the nodes of a layer: ends of arcs, images of the nodes of the layer before, and what
   /// fills the gaps. Links those of the layer before, `last` (null: there is none), with them.
   [[nodiscard]] ArcLayer make(const PathLayer& here, const CarriedNodes& before,
                               std::vector<ExplicitLattice::Point>* last) const;
   /// Returns what is carried on from nodes that a layer has.
   [[nodiscard]] CarriedNodes carried_from(const std::vector<ExplicitLattice::Point>& points) const;
+  /// Carries the nodes of each layer back to the layer before it, from the last to layer `first`,
+  /// where the roll is fixed: so a layer on a singularity has nodes from both sides.
+  /// Where nodes were carried to, those midway between the nodes of both neighbours are added.
+  /// `solutions`: of each layer, the number of its nodes that are IK solutions, which come first.
+  void carry_back(const ToolPath& path, const std::vector<std::int64_t>& solutions,
+                  std::vector<std::vector<ExplicitLattice::Point>>& points, int first) const;
 
  private:
   const Chain& chain_;
   const LockMethod& method_;
   const PathProblem& problem_;
   const SelfMotion& motion_;
+  /// Returns the nodes of a layer where the roll is fixed: IK solutions, and images of the nodes of
+  /// the layer before that are none of these.
+  [[nodiscard]] ArcLayer make_solutions(const PathLayer& here, const CarriedNodes& before,
+                                        std::vector<ExplicitLattice::Point>* last) const;
+
+  /// Adds nodes to a layer between two others: midway by the travel between a node of the one and
+  /// a node of the other that two steps may join.
+  void add_midway(const ToolPath& path, int layer,
+                  std::vector<std::vector<ExplicitLattice::Point>>& points) const;
+
+  std::optional<PoseSolutions> solutions_;  // where the roll is fixed
   SelfMotion::Least least_;
   bool twins_;
 };

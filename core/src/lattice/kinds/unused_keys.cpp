@@ -32,6 +32,9 @@ std::vector<UnusedKey> unused_keys(const Chain& chain, const ArmClass& arm) {
             {"limits", "step_error", no_angle}};
   else
     keys = {{"resolution", "arc", "the arm is S-R-S, and `dphi` divides its self-motion"}};
+  if (chain.roll_fixed)
+    keys.push_back({"resolution", "knot",
+                    "the arm has six joints and a tool that may not turn: nothing to spare"});
   const char* const no_roll = "no roll of an arm of seven joints is free";
   if (!chain.free_roll) keys.push_back({"resolution", "droll", no_roll});
   if (!chain.tool_may_turn()) keys.push_back({"limits", "roll_slope", "no roll is free"});

@@ -37,7 +37,7 @@ SearchedLattices::Ptr SearchedLattices::with_windings(const Ptr& from,
   return get(from, {}, joints, [&] { return Ptr(from->with_windings(joints)); });
 }
 
-SearchedLattices::Ptr SearchedLattices::free_lattice(const std::function<Ptr()>& make) {
+SearchedLattices::Ptr SearchedLattices::second(const std::function<Ptr()>& make) {
   return get(nullptr, {}, {}, make);
 }
 

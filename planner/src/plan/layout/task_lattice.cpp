@@ -51,4 +51,14 @@ std::shared_ptr<Lattice> TaskLattice::free_lattice(const PreparedRobot& robot,
   return turns_told_apart_ && robot.arm_class().srs ? with_all_windings(lattice) : lattice;
 }
 
+std::shared_ptr<Lattice> TaskLattice::second(const PreparedRobot& robot, const PathProblem& problem,
+                                             const Budget& budget) const {
+  if (coaxial_) return free_lattice(robot, problem, budget);
+  // Such a lattice treats as circles what a caller's hook may tell apart.
+  if (turns_told_apart_) return nullptr;
+  return make_lattice_past_singularity(
+      robot.arm().chain, robot.arm_class(), path_,
+      states_cost_ ? on_all_layers(problem, robot.arm_class()) : problem, budget);
+}
+
 }  // namespace swivel

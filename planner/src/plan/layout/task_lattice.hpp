@@ -31,21 +31,26 @@ class TaskLattice {
   [[nodiscard]] const ToolPath& path() const { return path_; }
   /// Returns the lattice that every plan searches first.
   [[nodiscard]] const std::shared_ptr<Lattice>& first() const { return first_; }
-  /// Returns whether joint 7 rests in first() (make_coaxial_lattice()), so that free_lattice() may
-  /// have a path even if first() has none.
+  /// Returns whether joint 7 rests in first() (make_coaxial_lattice()).
   [[nodiscard]] bool coaxial() const { return coaxial_; }
   /// Returns whether the caller's hook says what states cost: those of all layers, so that there
   /// are no knots.
   [[nodiscard]] bool states_cost() const { return states_cost_; }
   /// Returns whether plans with these hooks search the same lattices.
   [[nodiscard]] bool serves(const Hooks& hooks) const;
-  /// Makes the lattice of the task in which no joint rests. Robot and problem must be those that
-  /// this was made for. Throws InputError and Stopped.
+  /// Makes the lattice that may have a path where first() has none: that in which no joint rests,
+  /// or else make_lattice_past_singularity(), which may be null. Robot and problem must be those
+  /// that this was made for. Throws InputError and Stopped.
+  [[nodiscard]] std::shared_ptr<Lattice> second(const PreparedRobot& robot,
+                                                const PathProblem& problem,
+                                                const Budget& budget) const;
+
+ private:
+  /// Makes the lattice of the task in which no joint rests.
   [[nodiscard]] std::shared_ptr<Lattice> free_lattice(const PreparedRobot& robot,
                                                       const PathProblem& problem,
                                                       const Budget& budget) const;
 
- private:
   ToolPath path_;
   // Whether the lattices of S-R-S arms tell the turns of all joints apart, because the caller's
   // hooks may.

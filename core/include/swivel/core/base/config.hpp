@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <initializer_list>
+#include <string>
 
 namespace swivel {
 
@@ -56,6 +58,14 @@ class Config : public Eigen::Matrix<double, kMaxDof, 1> {
   [[nodiscard]] auto coordinates() const& { return head<kDof>(); }
   void coordinates() && = delete;  // it refers to the entries of this configuration
 };
+
+/// The names of an arm's joints, base to tip. The last is empty where an arm of six joints has a
+/// tool that may not turn: then the seventh coordinate is 0, and files and users have six.
+using JointNames = std::array<std::string, kDof>;
+/// Returns the number of joints that have a name, 6 or 7; 7 where none has.
+[[nodiscard]] inline std::size_t named_joints(const JointNames& names) {
+  return names.back().empty() && !names.front().empty() ? kDof - 1 : kDof;
+}
 
 /// Returns the sum of the arm's coordinates in `v`, a vector as long as a Config. It leaves out the
 /// entries behind them, which are zero, so that it has the bits of a sum of kDof numbers.

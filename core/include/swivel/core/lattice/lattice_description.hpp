@@ -49,6 +49,10 @@ class LatticeDescription {
     Config q = Config::Zero();
   };
   [[nodiscard]] virtual NodeFault fault(int layer, int slot) const = 0;
+  /// Returns points of a layer's self-motion, or of its IK solutions, that are outside of joint
+  /// limits, as faults of kind kLimit. Of a lattice whose slots without a node have a fault() there
+  /// are none.
+  [[nodiscard]] virtual std::vector<NodeFault> beyond_limits(int /*layer*/) const { return {}; }
   /// The distance of a layer's pose from the base's end of the arm, and the limit that it breaks
   /// because the arm can be neither so long nor so short, whatever its joints.
   struct Reach {

@@ -12,7 +12,7 @@
 
 namespace swivel::io {
 
-using JointNames = std::array<std::string, kDof>;
+using swivel::JointNames;
 
 /// Returns a timed motion as CSV: the columns t, s, phi, branch, the joints, and the joints with _v
 /// (rad/s) and _a (rad/s^2), and roll if a row has one, with 17 significant digits.

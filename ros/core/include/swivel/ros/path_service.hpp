@@ -105,7 +105,7 @@ struct Settings {
   double clearance = 0.005;  ///< kept between all bodies, m
   double rate = 100;         ///< points a second of motions in time
   /// For groups of six joints: how far the tool may stand turned about its own z axis, rad, to
-  /// either side; 0: such groups are refused.
+  /// either side; 0: it stands as it is asked.
   double roll = 0;
 };
 

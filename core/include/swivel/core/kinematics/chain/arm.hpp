@@ -50,11 +50,18 @@ struct Chain {
   /// True for an arm of six joints whose last "joint" is the roll: those six have turned the tool
   /// about its own z axis by it, and tool(q) is the pose without that turn, the waypoint's.
   bool roll = false;
+  /// True for an arm of six joints whose tool must stand as the waypoints have it (`roll` is true
+  /// besides): the roll is 0 in every configuration, its name is empty, its column of the Jacobian
+  /// is zero, and no file has it.
+  bool roll_fixed = false;
   /// The range of the roll of a seven-joint arm whose tool may be turned about its own z axis as
   /// well, rad; none: it may not. tool(q) is the pose of the tool itself, turned.
   std::optional<Roll> free_roll;
   /// Returns true if the tool may be turned about its own z axis from the waypoint's orientation.
-  [[nodiscard]] bool tool_may_turn() const { return roll || free_roll; }
+  [[nodiscard]] bool tool_may_turn() const { return (roll && !roll_fixed) || free_roll; }
+  /// Returns the number of coordinates that users know of: 6 where the roll is fixed, else 7. The
+  /// others are 0.
+  [[nodiscard]] std::size_t coordinates() const { return roll_fixed ? kDof - 1 : kDof; }
   /// Returns the joint (0-based) that slides; -1: all turn.
   [[nodiscard]] int slide() const;
   /// The constant matrices of exp([S] q) = still + cos(q) cosine + sin(q) sine (homogeneous); of a
@@ -147,8 +154,9 @@ struct ArmModel {
   std::vector<HeldJoint> held;
 };
 /// Builds the arm between two links. Its joints are the last seven movable joints before the tip
-/// that `hold` does not name and that mimic none; with `roll`, where the seventh of them is missing
-/// or prismatic, the last six, and the roll of the tool is the seventh. Every other joint is held
+/// that `hold` does not name and that mimic none. Where there are six, or with `roll` where the
+/// seventh is missing or prismatic, they are the last six, and the roll of the tool is the seventh:
+/// free within `roll`, or fixed without it (Chain::roll_fixed). Every other joint is held
 /// at its position in `hold` (by name, rad or m), by default at 0 or its limit nearest to 0. Where
 /// only seven are there, one may be prismatic.
 /// Joints that mimic a joint of the arm follow it: they move what they carry (Chain::followers),

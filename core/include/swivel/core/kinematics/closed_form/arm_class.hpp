@@ -11,8 +11,8 @@ namespace swivel {
 /// How the self-motion of an arm is found and divided into nodes.
 enum class ArmKind {
   kSrs,      ///< spherical shoulder and wrist, revolute elbow: a grid of arm angles
-  kArcs,     ///< closed form with one joint locked: arcs of self-motion
-  kSampled,  ///< neither: arcs found by Newton restarts and continuation, maybe not all
+  kArcs,     ///< closed form with one joint locked: arcs of self-motion; of six joints, solutions
+  kSampled,  ///< neither: arcs or solutions found by Newton and continuation, maybe not all
 };
 
 /// The class of an arm: which inverse kinematics it has.
@@ -20,7 +20,9 @@ struct ArmClass {
   ArmKind kind = ArmKind::kSampled;
   std::optional<SrsArm> srs;  ///< set for kSrs
   LockMethod lock;            ///< set for the other kinds
-  std::string not_srs;        ///< why the arm is not S-R-S: which axes miss each other, by how much
+  /// False for an arm of six joints whose tool may not turn (Chain::roll_fixed).
+  bool redundant = true;
+  std::string not_srs;  ///< why the arm is not S-R-S: which axes miss each other, by how much
   /// Returns true if all solutions of a pose are found, false if only those that sampling meets.
   [[nodiscard]] bool complete() const { return kind != ArmKind::kSampled; }
   /// Returns "closed form" or "sampled", see complete().

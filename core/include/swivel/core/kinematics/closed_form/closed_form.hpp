@@ -159,7 +159,8 @@ struct LockMethod {
   /// Joint to lock, 0-based: the one that self-motion turns most on average, of those possible; -1:
   /// none.
   int best = -1;
-  bool roll = false;  ///< the last joint is the roll of the tool of a six-joint arm
+  bool roll = false;        ///< the last joint is the roll of the tool of a six-joint arm
+  bool roll_fixed = false;  ///< that roll stays 0, and it alone may be locked
   /// Returns the method for people, such as "closed form: axes 1, 2 and 3 meet in a point; locks
   /// joint 5 (or 4, 6, 7)". The seventh joint of a six-joint arm is called "the roll".
   [[nodiscard]] std::string words() const;

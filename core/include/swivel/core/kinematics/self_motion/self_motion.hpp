@@ -83,7 +83,8 @@ class SelfMotion {
   [[nodiscard]] std::vector<SelfMotionArc> curves(const Pose& tool) const;
 
   /// Returns the configuration at the pose `tool` to which at most six Newton steps of least
-  /// weighted norm lead from q, none if they do not arrive.
+  /// weighted norm lead from q; where these do not arrive, and three axes line up at q or there,
+  /// that to which damped steps lead; else none.
   [[nodiscard]] std::optional<Config> image(const Config& q, const Pose& tool) const;
   /// What the move from q to its image minimises: its weighted norm, or its largest weighted joint,
   /// to first order.
@@ -102,6 +103,8 @@ class SelfMotion {
   /// rad, bit for bit. Returns none where Newton fails, or outside the limits.
   [[nodiscard]] std::optional<Config> with_joint_at(const Config& q, const Pose& tool, int joint,
                                                     double value) const;
+  /// Returns true where three axes of q line up within 1e-6 rad: arcs end there.
+  [[nodiscard]] bool is_aligned(const Config& q) const;
   /// Brings every joint of q to the whole turns that arcs have. Returns true if q is then inside
   /// the limits.
   [[nodiscard]] bool canonical(Config& q) const;

@@ -43,18 +43,21 @@ class ArcLattice final : public ExplicitLattice {
  public:
   /// Builds the nodes of every layer. `chain` and `path` must outlive the lattice. If `method` has
   /// no lock, the arcs of a layer are those that a search finds (self_motion.hpp) and those that
-  /// continue the layer before; "no path" then means that none was found. Throws InputError and
-  /// Stopped.
+  /// continue the layer before; "no path" then means that none was found. `srs`: of an S-R-S arm
+  /// its geometry, which must outlive the lattice: then branches and arm angles are those of such
+  /// arms. Throws InputError and Stopped.
   ArcLattice(const Chain& chain, const LockMethod& method, const ToolPath& path,
-             const PathProblem& problem, const Budget& budget = {});
+             const PathProblem& problem, const Budget& budget = {}, const SrsArm* srs = nullptr);
 
-  /// Returns arc_branch() of the node; phi() returns its arc_angle(), rad.
+  /// Returns arc_branch() of the node; phi() returns its arc_angle(), rad. Of an S-R-S arm they are
+  /// its branch and its carried arm angle.
   [[nodiscard]] int branch(int layer, int slot) const override;
   [[nodiscard]] double phi(int layer, int slot) const override;
 
   /// Returns the next slot on the node's arc, also in a lattice made by with_windings(), whose
   /// nodes have no neighbour_in_redundancy().
   [[nodiscard]] int next_on_arc(int layer, int slot) const override;
+  [[nodiscard]] std::vector<NodeFault> beyond_limits(int layer) const override;
   [[nodiscard]] LatticeInfo describe() const override;
   /// Returns the number of arcs of all layers together.
   [[nodiscard]] std::int64_t arcs() const { return data_.arcs; }
@@ -92,11 +95,15 @@ class ArcLattice final : public ExplicitLattice {
     std::shared_ptr<const SelfMotion> motion{};
     // The points before any with_windings() call, of a lattice by it that has layers between.
     Layers unwound{};
+    const SrsArm* srs = nullptr;
+    std::vector<ArmPlane> planes{};  // of an S-R-S arm, by layer of the whole path
   };
   static Data build(const Chain& chain, const LockMethod& method, const ToolPath& path,
                     const PathProblem& problem, const Budget& budget);
   ArcLattice(const Chain& chain, const LockMethod& method, const PathProblem& problem, Data&& data);
 
+  /// Returns the row of joints at a layer of the whole path, with branch and arm angle.
+  [[nodiscard]] TrajectoryRow labelled(int layer, const Config& q) const;
   /// Returns the posture that the problem gives for a layer; nothing if it gives none.
   [[nodiscard]] std::optional<Config> given(int layer) const;
   [[nodiscard]] std::optional<Config> row_between(int layer, int a, int b, int i, double t,
