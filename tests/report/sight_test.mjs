@@ -13,7 +13,7 @@ import { checkJumps } from './jumps.mjs';
 
 const [swivel, problems, packages] = process.argv.slice(2).map((path) => resolve(path)),
   screens = { desktop: { width: 1280, height: 800 }, phone: { width: 390, height: 844 } },
-  kShare = 0.8, // of the path
+  kShare = 0.78, // of the path
   kShort = 0.08; // what may lack to the most that any direction shows, where that is less
 
 /** In the page: defines window.test, which tells what the view's picture shows. */
