@@ -177,13 +177,13 @@ void print_other(const Chain& chain, const ArmClass& arm) {
     return;
   }
   const bool wrist = meet(chain, chain.roll ? 3 : 4);
-  say("class      %s with %s shoulder and %s wrist\n", chain.roll ? "6R and a roll" : "7R",
+  say("class      %s with %s shoulder and %s wrist\n", chain.roll ? "6R" : "7R",
       meet(chain, 0) ? "a spherical" : "no spherical", wrist ? "a spherical" : "no spherical");
   if (!chain.roll) say("not S-R-S  %s\n", arm.not_srs.c_str());
   if (chain.roll)
-    say("roll       path.roll: free lets the tool turn about its own axis; without, six joints "
-        "have "
-        "nothing to spare\n");
+    say("roll       with `path.roll: free` the tool may turn about its own z axis; without, it "
+        "stands "
+        "as the waypoints have it\n");
 }
 
 /// Returns the joints that move on their own and are neither the arm's nor between base and tip,

@@ -89,7 +89,10 @@ std::string path_section(const Robot& robot, const std::vector<Waypoint>& waypoi
   std::string text =
       "path:\n  # A first path that the arm can follow: positions of the tool frame, m, in\n"
       "  # base_link, and orientations as quaternions w, x, y, z. Or a table: `file: path.csv`.\n";
-  if (robot.roll) text += "  # The tool may turn about its own z axis.\n  roll: free\n";
+  if (robot.roll)
+    text +=
+        "  # The tool may turn about its own z axis. Without this line it stands as the waypoints "
+        "have it.\n  roll: free\n";
   text += "  waypoints:\n";
   for (const Waypoint& waypoint : waypoints) {
     const Quaterniond& q = waypoint.orientation;
