@@ -156,6 +156,17 @@ class SixJoints(unittest.TestCase):
         np.testing.assert_array_equal(answer.parts[0].trajectory.joints[0], problem.home)
         self.assertTrue(swivel.check(problem, answer).passed)
         self.assertEqual(answer.motion.joints.shape[1], 6)
+        blocked = job()  # a ball stands where the tool is to rest
+        blocked.home = [1.5, -1.4, 1.6, -1.8, -1.57, 0]
+        ball = swivel.pose(blocked.tool_pose(blocked.home)[:3, 3])
+        blocked.scene.add("ball", swivel.Sphere(0.05), ball)
+        none = swivel.plan(blocked)
+        self.assertEqual(none.status, "infeasible")
+        homes = [one for one in swivel.advise(blocked, none, timeout=10) if one.change == "home"]
+        self.assertEqual((len(homes), homes[0].home.shape), (1, (6,)))
+        self.assertRegex(str(homes[0]), r"home: \{joints: \[(-?[\d.]+, ){5}-?[\d.]+\]\}")
+        blocked.home = homes[0].home
+        self.assertEqual(swivel.plan(blocked).status, "solved")
         problem.home = [0] * 7
         with self.assertRaisesRegex(swivel.InvalidArgument, "home: 7 numbers: allowed are 6"):
             swivel.plan(problem)

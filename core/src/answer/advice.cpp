@@ -132,7 +132,7 @@ std::optional<std::string> words_of_strokes(const Advice& advice) {
       if (!advice.home) return "another home";
       std::string text;
       for (const double joint : advice.home->coordinates())
-        text += (text.empty() ? "" : ", ") + formatted("%.4f", joint);
+        if (std::isfinite(joint)) text += (text.empty() ? "" : ", ") + formatted("%.4f", joint);
       return "home: {joints: [" + text + "]}";
     }
     default:

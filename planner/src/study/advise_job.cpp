@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -200,6 +201,8 @@ class JobTrials {
         Config home = found.arm().parts.front().rows.front().q;
         for (double& joint : home.coordinates()) joint = std::round(1e4 * joint) / 1e4;
         changed.arm().home = advice.home = home;
+        if (robot_.arm().chain.roll_fixed)
+          (*advice.home)[kDof - 1] = std::numeric_limits<double>::infinity();
         add(std::move(advice), changed);
         return;
       }

@@ -73,7 +73,9 @@ struct Advice {
   /// Names of the strokes that are changed; for kHome, kBestOrder and kLines none.
   std::vector<std::string> strokes = {};
   std::optional<double> length = {};  ///< for kApproach, kRetract and kLines, m
-  std::optional<Config> home = {};    ///< for kHome, rad; none where no home was found to try
+  /// For kHome, rad; none where no home was found to try. Of an arm of six joints whose tool may
+  /// not turn the seventh number is infinite: there is none.
+  std::optional<Config> home = {};
   /// What planning gave; kFurther is only given for one path.
   Outcome outcome = Outcome::kUnknown;
   std::optional<double> cost = {};  ///< for kSolved: cost of the answer
