@@ -61,6 +61,16 @@ std::vector<ArmTable> offset_wrists_6r() {
         {v(0.07, 0.03, 0), o, x, -6.2, 6.2}},
        v(0.1, 0, 0.05),
        v(0, 0.8, 0)},
+      // Three axes nearly parallel, as of a UR, but by 6 degrees.
+      {"skew-shoulder",
+       {{v(0, 0, 0.18), o, z, -3.1, 3.1},
+        {v(0, 0.1, 0), v(0.1, 0, 0), y, -3.1, 3.1},
+        {v(0.5, -0.05, 0), v(0, 0, 0.1), y, -2.8, 2.8},
+        {v(0.45, 0, 0), v(0.1, 0, 0), y, -3.1, 3.1},
+        {v(0, 0.12, 0), o, -z, -3.1, 3.1},
+        {v(0, 0, -0.12), o, y, -6.2, 6.2}},
+       v(0, 0.11, 0.03),
+       v(-1.07, 0, 0)},
   };
 }
 
@@ -208,6 +218,27 @@ std::vector<Config> in_all_turns(const Chain& chain, const std::vector<Config>& 
   return all;
 }
 
+/// Returns waypoints on an arc of a circle that begins at a pose, along which the tool turns.
+std::vector<Waypoint> circle_from(const Pose& first, Random& random) {
+  constexpr int kParts = 8;
+  const double radius = random.uniform(0.05, 0.2), angle = random.uniform(0.3, 1.5),
+               turn = random.uniform(-0.5, 0.5);
+  const Matrix3d axes = Quaterniond(random.uniform(-1, 1), random.uniform(-1, 1),
+                                    random.uniform(-1, 1), random.uniform(-1, 1))
+                            .normalized()
+                            .toRotationMatrix();
+  std::vector<Waypoint> waypoints;
+  for (int k = 0; k <= kParts; ++k) {
+    const double t = angle * k / kParts;
+    Pose pose = first;
+    pose.translation() += radius * ((std::cos(t) - 1) * axes.col(0) + std::sin(t) * axes.col(1));
+    pose.linear() =
+        Eigen::AngleAxisd(turn * k / kParts, axes.col(2)).toRotationMatrix() * first.linear();
+    waypoints.push_back(waypoint_of(pose));
+  }
+  return waypoints;
+}
+
 PathProblem random_path(const ArmTable& table, Random& random) {
   PathProblem problem;
   auto model = std::make_shared<RobotModel>(
@@ -222,8 +253,10 @@ PathProblem random_path(const ArmTable& table, Random& random) {
     const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
     q[j] = random.uniform(std::max(-kPi, limit.lower), std::min(kPi, limit.upper));
   }
-  const int waypoints = 2 + random.below(3);
-  for (int k = 0; k < waypoints; ++k) {
+  // A third are arcs of circles, the others lines and corners.
+  const int waypoints = 1 + random.below(4);
+  if (waypoints == 1) problem.waypoints = circle_from(chain.tool(q), random);
+  for (int k = 0; waypoints > 1 && k < waypoints; ++k) {
     const Pose tool = chain.tool(q);
     problem.waypoints.push_back({tool.translation(), Quaterniond(tool.linear())});
     for (int j = 0; j < kJoints; ++j) q[j] += random.uniform(-0.25, 0.25);
