@@ -61,6 +61,7 @@ std::vector<std::pair<double, std::string>> marks_along(const std::vector<double
 class MapDrawing {
   static constexpr double kLeft = 52, kPanelWidth = 620, kPanelHeight = 190, kTop = 24, kGap = 52,
                           kRight = 24;
+  static constexpr std::size_t kMostInMargin = 9;  ///< letters of a text left of a panel
 
  public:
   static constexpr double kWidth = kLeft + kPanelWidth + kRight;
@@ -241,7 +242,11 @@ class MapDrawing {
     drawing_.text(kLeft, top_ - 7, "start", map_.solution_name(solution));
     for (const auto& [angle, name] : marks(map_))
       drawing_.text(kLeft - 6, y_of(angle) + 4, "end", name);
-    drawing_.text(kLeft - 6, top_ - 7, "end", map_.letter(solution) + ", " + map_.unit());
+    const std::string coordinate = map_.letter(solution) + ", " + map_.unit();
+    if (coordinate.size() <= kMostInMargin)
+      drawing_.text(kLeft - 6, top_ - 7, "end", coordinate);
+    else
+      drawing_.text(kLeft + kPanelWidth, top_ - 7, "end", "vertical: " + coordinate);
     for (const auto& [layer, name] : marks_along(map_.s))
       drawing_.text(x_of(layer), top_ + kPanelHeight + 15, "middle", name);
     drawing_.text(kLeft + kPanelWidth, top_ + kPanelHeight + 29, "end", "s, m");
