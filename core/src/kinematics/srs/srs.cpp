@@ -289,7 +289,7 @@ Config srs_ik(const SrsArm& arm, const std::array<ElbowCircle, 2>& circles, doub
       solve_euler(circle.shoulder, arm.shoulder.shift, s, c, branch & kShoulderBit);
   const auto wrist = solve_euler(circle.wrist, arm.wrist.shift, s, c, branch & kWristBit);
   Config q;
-  q << shoulder[0], shoulder[1], shoulder[2], circle.q4, wrist[0], wrist[1], wrist[2];
+  q.head<kDof>() << shoulder[0], shoulder[1], shoulder[2], circle.q4, wrist[0], wrist[1], wrist[2];
   return q;
 }
 
