@@ -67,7 +67,7 @@ Answer plan(const Problem& of, const PlanKeywords& keywords, bool refine,
             const MotionKeywords& motion) {
   const swivel::Problem problem = to_core(of);
   const MotionRequest asked{refine, motion.asked_timing(problem)};
-  PlanOptions options = keywords.options(coordinates_of(problem));
+  PlanOptions options = keywords.options(problem.arms.front());
   Answer answer = made_answer(interruptible([&](const std::stop_token& stop) {
                                 options.stop = stop;
                                 ProblemPlanner planner(problem, asked, Budget({}, nullptr, stop));

@@ -149,12 +149,14 @@ std::optional<double> to_timeout(std::optional<double> timeout) {
   return timeout;
 }
 
-PlanOptions PlanKeywords::options(std::size_t joints) const {
+PlanOptions PlanKeywords::options(const Robot& robot) const {
   PlanOptions options = to_plan_options(planner, threads, timeout, prove);
   if (evidence) options.evidence = Evidence::all();
   require_function(check, "check");
   require_function(check_motions, "check_motions");
   require_function(cost, "cost");
+  // The arm is built only where functions ask for its number of joints.
+  const std::size_t joints = has_own_functions() ? arm_of(robot).chain.coordinates() : 0;
   if (!check.is_none() || !check_motions.is_none())
     options.hooks.check = std::make_shared<ArrayCheck>(check, check_motions, joints);
   if (!cost.is_none()) options.hooks.cost = std::make_shared<ArrayCost>(cost, joints);

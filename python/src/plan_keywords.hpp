@@ -31,10 +31,10 @@ struct PlanKeywords {
   /// The caller's own functions of arrays of states; None where there is none.
   py::object check, check_motions, cost;
   py::object progress;
-  /// Returns the options, whose hooks call the functions with states of `joints` numbers. These
-  /// must outlive them, and the interpreter's lock must be held where the options are destroyed.
-  /// Throws ValueError and TypeError.
-  [[nodiscard]] PlanOptions options(std::size_t joints) const;
+  /// Returns the options, whose hooks call the functions with states of the robot's arm. The
+  /// functions must outlive them, and the interpreter's lock must be held where the options are
+  /// destroyed. Throws ValueError, TypeError and InputError.
+  [[nodiscard]] PlanOptions options(const Robot& robot) const;
   [[nodiscard]] bool has_own_functions() const {
     return !check.is_none() || !check_motions.is_none() || !cost.is_none();
   }

@@ -64,7 +64,7 @@ class KeptProblem {
     });
   }
   Answer plan(const PlanKeywords& keywords, bool refined, const MotionKeywords& motion) {
-    PlanOptions options = keywords.options(coordinates_of(problem_));
+    PlanOptions options = keywords.options(problem_.arms.front());
     const MotionRequest asked{refined, motion.asked_timing(problem_)};
     Answer answer = made_answer(interruptible([&](const std::stop_token& stop) {
                                   options.stop = stop;
@@ -204,7 +204,7 @@ class SharedPlanner {
   Answer plan(const PlanKeywords& keywords, bool refined, const MotionKeywords& motion) {
     const Use use(*this);
     if (kept_) return kept_->plan(keywords, refined, motion);
-    PlanOptions options = keywords.options(arm_of(of_path().problem()).chain.coordinates());
+    PlanOptions options = keywords.options(of_path().problem());
     of_path().set_task(task_to_core(task_, of_path().problem()));
     const swivel::Problem given = one_path(of_path().problem());
     const MotionRequest asked{refined, motion.asked_timing(given)};

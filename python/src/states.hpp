@@ -13,8 +13,8 @@ struct Clearances {
   std::shared_ptr<const StateClearances> result;
 };
 
-/// Returns states from an array (n, 7) or (7,), rad. Throws ValueError for other shapes and numbers
-/// that are not finite.
+/// Returns states from an array (n, width) or (width,), rad. Throws ValueError for other shapes and
+/// numbers that are not finite.
 [[nodiscard]] std::vector<Config> to_states(py::handle joints, std::size_t width);
 
 }  // namespace swivel::python

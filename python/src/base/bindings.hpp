@@ -94,13 +94,13 @@ void pass_half_turns(const Robot& robot, std::vector<Waypoint>& waypoints);
 /// Returns the joints of one posture, rad, of six numbers with kNoSeventh; nothing for None. Throws
 /// ValueError, with `name` as that of the argument, for another shape than (7,) or (6,).
 [[nodiscard]] std::optional<Config> to_posture(py::handle joints, const char* name);
-/// Returns the configurations of joints, (n, width) or one row (width,), rad; those of six numbers
-/// have 0 behind them. `width` 0: 7 or 6. Throws ValueError, with `what` as the name of the
-/// argument, for other shapes.
+/// Configurations that Python gives, rad.
 struct Postures {
-  std::vector<Config> rows;
-  std::size_t width = kDof;  ///< numbers of a row
+  std::vector<Config> rows;  ///< those of six numbers have 0 behind them
+  std::size_t width = kDof;  ///< numbers of a row as it was given
 };
+/// Returns the configurations of joints, (n, width) or one row (width,), rad. `width` 0: 7 or 6.
+/// Throws ValueError, with `what` as the name of the argument, for other shapes.
 [[nodiscard]] Postures to_joints(py::handle source, const char* what, std::size_t width);
 /// Returns the names of joints that there are.
 [[nodiscard]] std::vector<std::string> names_in(const JointNames& names);
