@@ -182,8 +182,7 @@ void print_other(const Chain& chain, const ArmClass& arm) {
   if (!chain.roll) say("not S-R-S  %s\n", arm.not_srs.c_str());
   if (chain.roll)
     say("roll       with `path.roll: free` the tool may turn about its own z axis; without, it "
-        "stands "
-        "as the waypoints have it\n");
+        "stands as the waypoints have it\n");
 }
 
 /// Returns the joints that move on their own and are neither the arm's nor between base and tip,

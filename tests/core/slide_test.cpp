@@ -291,7 +291,7 @@ TEST(Slide, MissesNoArcThatClosedFormsFindEveryMillimetre) {
   }
 }
 
-/// Of two joints that slide both are named.
+/// An arm with two sliding joints is refused, and the message names both joints.
 TEST(Slide, RefusesTwoSlides) {
   const TestRobot one = slide_robots()[0];
   TestRobot two = one;

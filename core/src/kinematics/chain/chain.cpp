@@ -457,8 +457,7 @@ void set_chain_joints(const RobotModel& robot, const KinematicPath& way,
 }
 
 /// Makes the roll of the tool the seventh joint of an arm of six: X_6(q) Rot(z, -roll) is the
-/// waypoint where X_6 has turned the tool by the roll.
-/// Without a range it stays 0.
+/// waypoint where X_6 has turned the tool by the roll. Without a range the roll stays 0.
 void add_roll_joint(const RobotModel& robot, const std::optional<Roll>& roll, Chain& chain) {
   chain.roll = true;
   chain.roll_fixed = !roll;
