@@ -349,8 +349,10 @@ void change_rest(PathProblem& p, swivel::test::Random& random) {
   if (random.coin(0.3)) p.cost.weights = {1, 1, random.uniform(1, 2), 1, 1, 1, 1};
   if (random.coin(0.3)) p.refinement.smoothing = random.uniform(0, 0.1);
   if (!p.roll && build_arm(*p.model, p.base_link, p.tip_link, p.hold, p.tool).chain.roll_fixed) {
-    if (p.cost.weights) p.cost.weights->back() = 0;  // there is no seventh number
+    // A file has six numbers; the seventh is read as 0, or as the sixth of the rates.
+    if (p.cost.weights) p.cost.weights->back() = 0;
     if (p.start) (*p.start)[kDof - 1] = 0;
+    if (auto& rates = p.limits.joint_acceleration) rates->back() = (*rates)[kDof - 2];
   }
   if (random.coin(0.3))
     p.attached.push_back({"held", Cylinder{0.1, 0.2}, random_pose(random), p.tip_link});
@@ -417,14 +419,18 @@ TEST(SavedProblems, RandomChangesAreReadBack) {
   const std::uint64_t seed = swivel::test::seed("SavedProblems");
   const TempFolder folder;
   int cases = 0, kept = 0;
-  for (const auto& entry : fs::directory_iterator(fs::path(SWIVEL_DATA_DIR) / "problems")) {
+  const fs::directory_iterator entries(fs::path(SWIVEL_DATA_DIR) / "problems");
+  std::vector<fs::path> sources;
+  for (const auto& entry : entries) sources.push_back(entry.path());
+  std::sort(sources.begin(), sources.end());
+  for (const fs::path& source : sources) {
     std::optional<PathProblem> loaded;
     try {
-      loaded = load_path_problem(entry.path());
+      loaded = load_path_problem(source);
     } catch (const InputError&) {
       continue;  // a job or a workcell
     }
-    if (entry.path().stem() == "experiment_c_20k") continue;  // as experiment_c, with a large mesh
+    if (source.stem() == "experiment_c_20k") continue;  // as experiment_c, with a large mesh
     for (int k = 0; k < swivel::test::trials(12); ++k) {
       swivel::test::Random random(seed + static_cast<std::uint64_t>(cases));
       PathProblem problem = *loaded;
@@ -434,7 +440,7 @@ TEST(SavedProblems, RandomChangesAreReadBack) {
       change_path(problem, random);
       change_rest(problem, random);
       const fs::path file = folder.path() / (std::to_string(cases) + ".yaml");
-      SCOPED_TRACE(entry.path().string() + ", case " + std::to_string(cases));
+      SCOPED_TRACE(source.string() + ", case " + std::to_string(cases));
       ++cases;
       save_problem(problem, file);
       PathProblem expected = problem;
@@ -443,7 +449,7 @@ TEST(SavedProblems, RandomChangesAreReadBack) {
       // A list that is taken out takes the comments within it along.
       if (problem.source.empty() || problem.attached.empty()) continue;
       const std::string text = TempFolder::read(file);
-      for (const std::string& comment : comments_of(TempFolder::read(entry.path())))
+      for (const std::string& comment : comments_of(TempFolder::read(source)))
         if (text.find(comment) != text.npos)
           ++kept;
         else if (comment.find("waypoint") == comment.npos)
