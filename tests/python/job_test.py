@@ -464,17 +464,22 @@ class JobMotions(unittest.TestCase):
         self.assertIsInstance(advice, swivel.AdviceList)
 
     def test_not_executable(self):
-        # The cheapest job of this episode jumps from branch to branch at a singularity.
+        # With rows as dense as those of transitions there is no clearance to spare between them.
         job = swivel.load(DOOR)
         job.scene = swivel.load(DATA / "problems" / "experiment_c.yaml").episode(1, 3).scene
         motion = swivel.time(job, swivel.plan(job), rate=50)
         self.assertFalse(motion.executable)
-        self.assertRegex(motion.reason, "stroke 'row_5': the solution changes from branch")
-        self.assertEqual((motion.at_part, len(motion)), (11, 0))
-        self.assertGreater(motion.at_s, 0)
+        self.assertRegex(motion.reason, "transition .*: rows .* come closer than 5.000 mm")
+        self.assertEqual((motion.at_part, motion.at_s, len(motion)), (None, None, 0))
         self.assertEqual((motion.joints.shape, motion.process.shape), ((0, 7), (0, )))
-        with self.assertRaisesRegex(ValueError, "not executable: stroke 'row_5': s = "):
+        with self.assertRaisesRegex(ValueError, "not executable: transition .*: rows "):
             print(motion.duration)
+        # The joints of this path jump at a singular pose.
+        path = swivel.load(DATA / "problems" / "experiment_c.yaml").episode(1, 153)
+        motion = swivel.time(path, swivel.plan(path), speed=0.1)
+        self.assertFalse(motion.executable)
+        self.assertRegex(motion.reason, "the joints would have to jump")
+        self.assertGreater(motion.at_s, 0)
 
 
 class JobChecks(unittest.TestCase):
@@ -745,7 +750,7 @@ class JobStudies(unittest.TestCase):
         # What a worker of a Dask cluster does with the recipe that it gets, without Dask.
         job = self.job()
         rows = swivel.campaign(job, episodes=4, seed=2)
-        make = functools.partial(swivel._swivel._Campaigner, job, 4, 2, "lazy", 1, True)
+        make = functools.partial(swivel._swivel._Campaigner, job, 4, 2, "parallel", 1, True)
         planners = pickle.loads(pickle.dumps(swivel.runs._Planners(make)))
         parts = [
             planners.plan(swivel.runs._plan_episodes, (index, 2)) for index in reversed(range(2))

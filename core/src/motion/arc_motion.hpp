@@ -7,9 +7,9 @@
 
 namespace swivel {
 
-/// The motion of an arm without an arm angle (make_path_motion()): a spline of the joints, moved
-/// onto the path.
-class ArcMotion final : public PathMotion {
+/// The motion of an arm along arcs of self-motion (make_path_motion()): a spline of the joints,
+/// moved onto the path.
+class ArcMotion : public PathMotion {
  public:
   ArcMotion(const Chain& chain, const LockMethod& lock, const ToolPath& path,
             const std::vector<TrajectoryRow>& rows, double apart, double off_limits,

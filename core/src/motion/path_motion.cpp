@@ -81,6 +81,12 @@ std::unique_ptr<PathMotion> make_path_motion(const Chain& chain, const ArmClass&
                                              const std::vector<TrajectoryRow>& rows, double apart,
                                              double off_limits,
                                              const std::vector<BetweenRow>& between) {
+  const auto changes = [](const TrajectoryRow& a, const TrajectoryRow& b) {
+    return a.branch != b.branch;
+  };
+  if (arm.kind == ArmKind::kSrs &&
+      std::adjacent_find(rows.begin(), rows.end(), changes) != rows.end())
+    return std::make_unique<SrsArcMotion>(chain, *arm.srs, path, rows, apart, off_limits, between);
   if (arm.kind == ArmKind::kSrs)
     return std::make_unique<SrsMotion>(chain, *arm.srs, path, rows, apart, between);
   return std::make_unique<ArcMotion>(chain, arm.lock, path, rows, apart, off_limits, between);

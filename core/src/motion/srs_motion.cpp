@@ -31,25 +31,50 @@ Vector3d clearest_direction(const std::vector<ArmPlane>& planes) {
   return best;
 }
 
+std::optional<PathMotion::Singular> nearest_of(const SrsArm& arm, const Config& q) {
+  const std::pair<const char*, double> angles[] = {{"shoulder", arm.shoulder_angle(q)},
+                                                   {"elbow", arm.elbow_angle(q)},
+                                                   {"wrist", arm.wrist_angle(q)}};
+  std::optional<PathMotion::Singular> nearest;
+  for (const auto& [where, angle] : angles) {
+    const double away = std::abs(std::asin(std::clamp(std::sin(angle), -1.0, 1.0)));
+    if (!nearest || away < nearest->angle) nearest = {where, away};
+  }
+  return nearest;
+}
+
 }  // namespace
+
+CarriedArmAngles::CarriedArmAngles(const SrsArm& arm, const ToolPath& path)
+    : arm_(&arm),
+      path_(&path),
+      planes_(carried_planes(arm, path.unturned() ? *path.unturned() : path)) {}
+
+double CarriedArmAngles::at(double travel, int step, double t, const Config& q) const {
+  const auto layer = static_cast<std::size_t>(step);
+  const ToolPath& unturned = path_->unturned() ? *path_->unturned() : *path_;
+  // Planes of a closed path are not carried into the last one, which is the first.
+  constexpr double kRounding = 1e-9;  // m
+  const bool ends = t == 1 || (path_->closed() && step + 2 == path_->size() &&
+                               path_->layer(step + 1).travel - travel <= kRounding);
+  ArmPlane plane =
+      ends ? planes_[layer + 1] : carry_plane(*arm_, planes_[layer], unturned.at_travel(travel));
+  if (path_->unturned()) plane = carry_plane(*arm_, plane, path_->at_travel(travel));
+  return plane.angle_of(arm_->elbow_axis(q));
+}
 
 SrsMotion::SrsMotion(const Chain& chain, const SrsArm& arm, const ToolPath& path,
                      const std::vector<TrajectoryRow>& rows, double apart,
                      const std::vector<BetweenRow>& between)
     : PathMotion(chain, path, rows, apart, between),
       arm_(&arm),
-      planes_(carried_planes(arm, path.unturned() ? *path.unturned() : path)),
+      carried_(arm, path),
       still_(clearest_direction(carried_planes(arm, path))) {
   std::vector<double> angles;
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     const double angle = still_plane(pose_of(k)).angle_of(arm.elbow_axis(rows_[k].q));
     angles.push_back(k == 0 ? angle : angles.back() + wrap_angle(angle - angles.back()));
   }
-  for (std::size_t k = 1; k < rows.size(); ++k)
-    if (rows[k].branch != rows[k - 1].branch)
-      jumps_.push_back({rows[k].s, "the solution changes from branch " +
-                                       std::to_string(rows[k - 1].branch) + " to " +
-                                       std::to_string(rows[k].branch)});
   angle_.emplace(travel_, std::move(angles));
 }
 
@@ -80,30 +105,31 @@ std::optional<Config> SrsMotion::joints(double travel) const {
 
 TrajectoryRow SrsMotion::row(double travel, const Config& q) const {
   const auto [s, t, i] = place(travel);
-  const auto layer = static_cast<std::size_t>(i);
-  const ToolPath& unturned = path_->unturned() ? *path_->unturned() : *path_;
-  // Planes of a closed path are not carried into the last one, which is the first.
-  constexpr double kRounding = 1e-9;  // m
-  const bool ends = t == 1 || (path_->closed() && i + 2 == path_->size() &&
-                               path_->layer(i + 1).travel - travel <= kRounding);
-  ArmPlane plane =
-      ends ? planes_[layer + 1] : carry_plane(*arm_, planes_[layer], unturned.at_travel(travel));
-  if (path_->unturned()) plane = carry_plane(*arm_, plane, path_->at_travel(travel));
   return counted_from_waypoints(
       *chain_, *path_, travel,
-      {s, plane.angle_of(arm_->elbow_axis(q)), arm_->branch(q), q, path_->roll_at(travel)});
+      {s, carried_.at(travel, i, t, q), arm_->branch(q), q, path_->roll_at(travel)});
 }
 
 std::optional<PathMotion::Singular> SrsMotion::nearest_singular(const Config& q) const {
-  const std::pair<const char*, double> angles[] = {{"shoulder", arm_->shoulder_angle(q)},
-                                                   {"elbow", arm_->elbow_angle(q)},
-                                                   {"wrist", arm_->wrist_angle(q)}};
-  std::optional<Singular> nearest;
-  for (const auto& [where, angle] : angles) {
-    const double away = std::abs(std::asin(std::clamp(std::sin(angle), -1.0, 1.0)));
-    if (!nearest || away < nearest->angle) nearest = {where, away};
-  }
-  return nearest;
+  return nearest_of(*arm_, q);
+}
+
+SrsArcMotion::SrsArcMotion(const Chain& chain, const SrsArm& arm, const ToolPath& path,
+                           const std::vector<TrajectoryRow>& rows, double apart, double off_limits,
+                           const std::vector<BetweenRow>& between)
+    : ArcMotion(chain, {}, path, rows, apart, off_limits, between),
+      arm_(&arm),
+      carried_(arm, path) {}
+
+TrajectoryRow SrsArcMotion::row(double travel, const Config& q) const {
+  const auto [s, t, i] = place(travel);
+  return counted_from_waypoints(
+      *chain_, *path_, travel,
+      {s, carried_.at(travel, i, t, q), arm_->branch(q), q, path_->roll_at(travel)});
+}
+
+std::optional<PathMotion::Singular> SrsArcMotion::nearest_singular(const Config& q) const {
+  return nearest_of(*arm_, q);
 }
 
 }  // namespace swivel

@@ -1028,12 +1028,19 @@ void count_rounded(const ToolPath& path, TimedPath& out) {
 std::optional<ArmFailure> slow_down_to_rates(Samples& samples, std::vector<RestToRest>& pieces,
                                              std::vector<TimedPath>& out) {
   constexpr int kLocalRounds = 12, kRounds = 32;
-  constexpr double kJump = 100;  // an excess so large is a jump of the joints that was not seen
+  // An excess so large, at once or in time, is a jump of the joints that was not seen.
+  constexpr double kJump = 100;
+  const auto duration = [&] {
+    double sum = 0;
+    for (const RestToRest& piece : pieces) sum += piece.duration();
+    return sum;
+  };
+  const double first = duration();
   for (int round = 1;; ++round) {
     if (auto failure = samples.take(out)) return failure;
     const auto [slower, worst, arm] = samples.measure_peaks(out);
     if (slower <= 1) return std::nullopt;
-    if (round == kRounds || slower > kJump)
+    if (round == kRounds || slower > kJump || slower * duration() > kJump * first)
       return ArmFailure{{worst, "the joints would have to jump between layers"}, arm};
     if (round <= kLocalRounds)
       samples.slow_down(out);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "swivel/planner/job/plan_job.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -8,7 +9,9 @@
 #include "job/plan_strokes.hpp"
 #include "measure/measure_rows.hpp"
 #include "plan/answer.hpp"
+#include "plan/layout/keeps_branch.hpp"
 #include "plan/stopwatch.hpp"
+#include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/problem/validate.hpp"
 #include "swivel/planner/job/check_job.hpp"
 #include "swivel/planner/job/time_job.hpp"
@@ -150,6 +153,17 @@ class AfterJobPlan {
   const std::vector<Part> planned_;
 };
 
+/// Returns true if the rows of a run of the job are not all on one branch.
+bool any_changes_branch(const Answer& job) {
+  return std::any_of(job.arm().parts.begin(), job.arm().parts.end(),
+                     [](const Part& part) { return part.run && changes_branch(part.rows); });
+}
+
+/// Returns true if there are rows, and no motion through them, whatever the time.
+bool has_no_motion(const Answer& job) {
+  return job.motion && job.motion->failure && !job.stopped && !job.motion->failure->too_near;
+}
+
 }  // namespace
 
 Answer plan_job(const PreparedRobot& robot, const Problem& job, const PlanOptions& options,
@@ -170,18 +184,33 @@ Answer plan_job_motion(const PreparedRobot& robot, const Problem& job, const Pla
   const Problem completed = timing ? with_motion_defaults(job) : job;
   robot.require_prepared_for(problem_of_run(completed, {0, false}));
   const Budget budget = options.budget();
-  // The refined rows are measured later, in place of the planned ones.
-  PlanOptions first = options;
-  if (refined) first.evidence = {.layers = options.evidence.layers};
   ProblemView own;
   if (view == nullptr && refined) view = &own;
-  Answer answer = plan_strokes(robot, completed, first, budget, timing.has_value(), view);
-  answer.timing = timing;
-  if (!answer.has_rows() || !(refined || timing)) return answer;
-  const Problem executed = executed_problem(completed, answer);
-  AfterJobPlan(robot, executed, options, budget, view == nullptr ? own : *view, answer)
-      .run(refined);
-  return answer;
+  bool changes_branch = false;
+  const auto attempt = [&](bool one_branch, ProblemView* its_view) {
+    // The refined rows are measured later, in place of the planned ones.
+    PlanOptions first = options;
+    if (refined) first.evidence = {.layers = options.evidence.layers};
+    Answer answer = plan_strokes(robot, completed, first, budget, one_branch, its_view);
+    answer.timing = timing;
+    if (!answer.has_rows() || !(refined || timing)) return answer;
+    changes_branch = robot.arm_class().srs && any_changes_branch(answer);
+    const Problem executed = executed_problem(completed, answer);
+    AfterJobPlan(robot, executed, options, budget, its_view == nullptr ? own : *its_view, answer)
+        .run(refined);
+    return answer;
+  };
+  Answer answer = attempt(false, view);
+  if (!changes_branch || options.hooks.check || !has_no_motion(answer)) return answer;
+  ProblemView other_view;
+  Answer other = attempt(true, view == nullptr ? nullptr : &other_view);
+  if (other.timed() == nullptr) return answer;
+  if (view != nullptr) std::swap(*view, other_view);
+  other.warnings.push_back(
+      formatted("the cheapest job, of cost %.6g, asks joints to jump, which no controller can "
+                "follow: this is the cheapest that keeps a branch in each stroke",
+                answer.cost));
+  return other;
 }
 
 }  // namespace swivel

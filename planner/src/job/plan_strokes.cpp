@@ -369,6 +369,7 @@ class JobPlan {
         add_lines(unused_key_warnings(
                       unused_knot(hooks_.cost ? "jobs whose states cost something"
                                   : run->problem.limits.step_error ? "paths with limits.step_error"
+                                  : run->problem.resolution.arcs   ? "paths with resolution.arcs"
                                                                    : "strokes in several runs"),
                       problem_of_run(job_, run->run)),
                   result_.warnings);
@@ -911,41 +912,6 @@ class OrderSearch {
   TransitionCounters transitions_;
 };
 
-Answer plan_in_order(const PreparedRobot& robot, const Problem& job, const PlanOptions& options,
-                     const Budget& budget, ProblemView* view, bool one_branch = false) {
-  return OrderSearch(robot, job, options, budget, one_branch, view).plan();
-}
-
-/// Returns true if the rows of a run of the job are not all on one branch.
-bool any_changes_branch(const Answer& job) {
-  return std::any_of(job.arm().parts.begin(), job.arm().parts.end(),
-                     [](const Part& part) { return part.run && changes_branch(part.rows); });
-}
-
-/// Plans a job of which motions are to be made: the cheapest, or the cheapest whose runs do not
-/// change branch if the cheapest does and there is one.
-Answer plan_executable(const PreparedRobot& robot, const Problem& job, const PlanOptions& options,
-                       const Budget& budget, ProblemView* view) {
-  Answer found = plan_in_order(robot, job, options, budget, view);
-  if (found.arm().parts.empty() || !robot.arm_class().srs || !any_changes_branch(found) ||
-      options.hooks.check)
-    return found;
-  ProblemView other_view;
-  Answer other =
-      plan_in_order(robot, job, options, budget, view == nullptr ? nullptr : &other_view, true);
-  if (other.arm().parts.empty()) return found;
-  if (view != nullptr) std::swap(*view, other_view);
-  other.warnings.push_back(
-      formatted("the cheapest job, of cost %.6g, jumps to another branch, which no controller can "
-                "follow: this is the cheapest that does not",
-                found.cost));
-  return other;
-}
-
-}  // namespace
-
-namespace {
-
 /// Throws InvalidArgument for a cost of the caller's own of a job that does not take one.
 void require_cost_supported(const Problem& job, const Hooks& hooks) {
   if (!hooks.cost) return;
@@ -961,12 +927,11 @@ void require_cost_supported(const Problem& job, const Hooks& hooks) {
 }  // namespace
 
 Answer plan_strokes(const PreparedRobot& robot, const Problem& job, const PlanOptions& options,
-                    const Budget& budget, bool executable, ProblemView* view) {
+                    const Budget& budget, bool one_branch, ProblemView* view) {
   require_cost_supported(job, options.hooks);
   return plan_with_lift_offs(
       robot, job, options, budget, view, [&](const Problem& one, ProblemView* its_view) {
-        return executable ? plan_executable(robot, one, options, budget, its_view)
-                          : plan_in_order(robot, one, options, budget, its_view);
+        return OrderSearch(robot, one, options, budget, one_branch, its_view).plan();
       });
 }
 

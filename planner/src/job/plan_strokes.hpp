@@ -11,11 +11,11 @@ namespace swivel {
 class PreparedRobot;
 
 /// Plans the strokes of a job: in their order, or in the cheapest one that is found, with lift-offs
-/// where the job allows and needs some. With `executable`, returns the cheapest job whose runs do
-/// not change branch, if the cheapest of all does and there is such a one. `view`, if given, gets
-/// what was found out about the runs.
+/// where the job allows and needs some. With `one_branch`, no run of an S-R-S arm changes its
+/// branch, and there must be no check by the caller's hook. `view`, if given, gets what was found
+/// out about the runs.
 [[nodiscard]] Answer plan_strokes(const PreparedRobot& robot, const Problem& job,
-                                  const PlanOptions& options, const Budget& budget, bool executable,
+                                  const PlanOptions& options, const Budget& budget, bool one_branch,
                                   ProblemView* view);
 
 }  // namespace swivel

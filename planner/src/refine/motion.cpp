@@ -292,28 +292,6 @@ void refine_until_timed(const PreparedRobot& robot, const PathProblem& problem,
 
 namespace {
 
-/// Returns the cheapest path. With `one_branch`, returns the cheapest that never changes branch if
-/// there is one.
-PlanResult plan_executable(Planner& planner, const PlanOptions& options, bool one_branch) {
-  PlanResult found = planner.plan(options);
-  if (!one_branch || found.status != PlanStatus::kSolved || !changes_branch(found.trajectory) ||
-      options.hooks.check)
-    return found;
-  const ArmClass& arm = planner.view().robot.arm_class();
-  if (!arm.srs) return found;  // signs of other arms change along a motion
-  PlanOptions keeping = options;
-  keeping.hooks.check = std::make_shared<KeepsBranch>(*arm.srs);
-  PlanResult other = planner.plan(keeping);
-  if (other.status != PlanStatus::kSolved) return planner.plan(options);  // for its view
-  const std::string text = formatted(
-      "the cheapest path, of cost %.6g, jumps to another branch, which no controller can follow: "
-      "this is the cheapest "
-      "that does not",
-      found.cost);
-  other.warnings.emplace_back(text);
-  return other;
-}
-
 /// Notes that time ran out: the lattice's path stays, without refinement and motion.
 void stop(MotionPlan& plan, bool refined, bool timed) {
   plan.stopped = true;
@@ -355,48 +333,21 @@ void require_tool_speed_of(const PathProblem& problem, double speed) {
                      speed, "speed");
 }
 
-}  // namespace
-
-Answer answer_of(MotionPlan plan, const std::optional<TimingOptions>& timing) {
-  Answer answer = answer_of(std::move(plan.result));
-  answer.timing = timing;
-  answer.stopped = plan.stopped;
-  if (plan.refinement) {
-    RefinedRuns& refined = answer.refinement.emplace();
-    refined.turns = 1;
-    refined.cost_before = plan.refinement->cost_before;
-    refined.cost = plan.refinement->cost;
-    refined.runs.push_back(*std::move(plan.refinement));
-    answer.refined = refined.any();
-  }
-  if (!plan.motion) return answer;
-  MotionTiming& timed = answer.motion.emplace();
-  timed.failure = std::move(plan.motion->failure);
-  timed.time_ms = plan.motion->time_ms;
-  timed.check_ms = plan.motion->check_ms;
-  if (!plan.motion->motion) return answer;
-  Motion& motion = timed.motion.emplace();
-  ArmMotion& arm = motion.arms.emplace_back();
-  static_cast<TimedPath&>(arm) = *std::move(plan.motion->motion);
-  motion.rate = arm.rate;
-  motion.duration = arm.duration;
-  motion.ideal = arm.ideal;
-  return answer;
-}
-
-MotionPlan plan_motion(Planner& planner, const PlanOptions& options, bool refined,
-                       const std::optional<TimingOptions>& timing) {
-  if (timing) require_tool_speed_of(planner.problem(), timing->speed);
-  const Budget budget = options.budget();
+/// Plans a path, refines it and times it as plan_motion() does. `one_branch`: if set, of an S-R-S
+/// arm, which then never changes its branch.
+MotionPlan attempt(Planner& planner, const PlanOptions& options, bool refined,
+                   const std::optional<TimingOptions>& timing, const Budget& budget,
+                   const std::shared_ptr<KeepsBranch>& one_branch) {
   // The caller's own cost is not known off the lattice.
   const bool own_cost = refined && options.hooks.cost;
   refined = refined && !own_cost;
   // The refined path is measured later, in place of the lattice's.
   PlanOptions first = options;
+  if (one_branch) first.hooks.check = one_branch;
   if (refined) first.evidence = {.layers = options.evidence.layers};
   MotionPlan plan;
   PlanResult& result = plan.result;
-  result = plan_executable(planner, first, timing.has_value());
+  result = planner.plan(first);
   if (result.status != PlanStatus::kSolved) return plan;
   plan.lattice_path = result.trajectory;
   const PlanView view = planner.view();
@@ -427,6 +378,62 @@ MotionPlan plan_motion(Planner& planner, const PlanOptions& options, bool refine
   } catch (const Stopped&) {
   }
   return plan;
+}
+
+/// Returns true if there is a path, and no motion along it, whatever the time.
+bool has_no_motion(const MotionPlan& plan) {
+  return plan.motion && plan.motion->failure && !plan.stopped && !plan.motion->failure->too_near;
+}
+
+}  // namespace
+
+MotionPlan plan_motion(Planner& planner, const PlanOptions& options, bool refined,
+                       const std::optional<TimingOptions>& timing) {
+  if (timing) require_tool_speed_of(planner.problem(), timing->speed);
+  const Budget budget = options.budget();
+  MotionPlan plan = attempt(planner, options, refined, timing, budget, nullptr);
+  if (!has_no_motion(plan) || !changes_branch(plan.lattice_path) || options.hooks.check)
+    return plan;
+  const ArmClass& arm = planner.view().robot.arm_class();
+  if (!arm.srs) return plan;  // signs of other arms change along a motion
+  MotionPlan other = attempt(planner, options, refined, timing, budget,
+                             std::make_shared<KeepsBranch>(*arm.srs));
+  if (!other.motion || !other.motion->motion) {
+    static_cast<void>(planner.plan(options));  // for its view
+    return plan;
+  }
+  other.result.warnings.push_back(
+      formatted("the cheapest path, of cost %.6g, asks joints to jump, which no controller can "
+                "follow: this is the cheapest that keeps its branch",
+                plan.result.cost));
+  return other;
+}
+
+Answer answer_of(MotionPlan plan, const std::optional<TimingOptions>& timing) {
+  Answer answer = answer_of(std::move(plan.result));
+  answer.timing = timing;
+  answer.stopped = plan.stopped;
+  if (plan.refinement) {
+    RefinedRuns& refined = answer.refinement.emplace();
+    refined.turns = 1;
+    refined.cost_before = plan.refinement->cost_before;
+    refined.cost = plan.refinement->cost;
+    refined.runs.push_back(*std::move(plan.refinement));
+    answer.refined = refined.any();
+  }
+  if (!plan.motion) return answer;
+  MotionTiming& timed = answer.motion.emplace();
+  timed.failure = std::move(plan.motion->failure);
+  timed.time_ms = plan.motion->time_ms;
+  timed.check_ms = plan.motion->check_ms;
+  if (!plan.motion->motion) return answer;
+  Motion& motion = timed.motion.emplace();
+  ArmMotion& arm = motion.arms.emplace_back();
+  static_cast<TimedPath&>(arm) = *std::move(plan.motion->motion);
+  motion.rate = arm.rate;
+  motion.duration = arm.duration;
+  motion.ideal = arm.ideal;
+  return answer;
 }
 
 std::vector<TrajectoryRow> rows_on_path(const PreparedRobot& robot, const PathProblem& problem,

@@ -93,13 +93,15 @@ class PathMotion {
 /// For S-R-S arms the arm angle is a spline through those of the rows, and joints follow in closed
 /// form. The angle is measured from a direction that stands still, of several the one that the line
 /// from shoulder to wrist keeps clearest of: the carried arm angle has kinks at layers, from the
-/// area that its reference direction runs round. Steps from one branch to another are jumps.
+/// area that its reference direction runs round.
 ///
-/// For other arms a spline through the joints of the rows is moved onto the pose by Newton steps of
-/// least norm, so that along the self-motion the joints are those of the spline. Places that no
-/// continuous motion leads over are jumps. Rows with a joint nearer to its limit than `off_limits`
-/// (rad) are moved along the self-motion until it is as far, except the first and the last: nodes
-/// of arcs stand on limits, and a spline through them would leave these.
+/// For other arms, and through rows of an S-R-S arm that change the branch, as it may at a
+/// singular pose of the shoulder or the wrist, a spline through the joints of the rows is moved
+/// onto the pose by Newton steps of least norm, so that along the self-motion the joints are
+/// those of the spline. Places that no continuous motion leads over are jumps. Rows with a
+/// joint nearer to its limit than `off_limits` (rad) are moved along the self-motion until it
+/// is as far, except the first and the last: nodes of arcs stand on limits, and a spline
+/// through them would leave these.
 [[nodiscard]] std::unique_ptr<PathMotion> make_path_motion(
     const Chain& chain, const ArmClass& arm, const ToolPath& path,
     const std::vector<TrajectoryRow>& rows, double apart = 0, double off_limits = 0,
