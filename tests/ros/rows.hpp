@@ -202,7 +202,7 @@ std::vector<Row<Request>> rows_of_limits() {
        },
        kSuccess, 1, 1, "not avoided"},
       {"band", [](Request& r) { add_band(r, "joint_a3", 0, 0.2); }, kSuccess, 1, 1, "whole"},
-      {"narrow band", [](Request& r) { add_band(r, "joint_a1", 0, 0.02); }, kSuccess, 0.01, 0.99,
+      {"narrow band", [](Request& r) { add_band(r, "joint_a1", 0, 0.001); }, kSuccess, 0.01, 0.99,
        "joint_a1"},
       {"band of no joint", [](Request& r) { add_band(r, "elbow", 0, 0.2); }, kFailure, 0, 0,
        "elbow"},

@@ -29,6 +29,7 @@ inline std::vector<TestRobot> arms_of_one_turn() {
 inline PathProblem random_task(const TestRobot& robot, Random& random) {
   PathProblem problem = random_problem(robot, random);
   problem.limits.step_error.reset();
+  problem.resolution.arcs = false;
   problem.limits.arm_slope = Limits().arm_slope;
   if (has_arm_angle(robot))
     problem.resolution.dphi = random.uniform(0.7, 1.2);

@@ -22,14 +22,15 @@ namespace swivel::test {
 
 inline constexpr double kNone = std::numeric_limits<double>::infinity();
 
-/// One arm for the plain program: the nodes of each layer that its own world allows, and which of
-/// its edges that world allows, asked when they are needed. The world is asked about the exact
-/// joints of nodes (Lattice::exact_config()).
+/// One arm for the plain program, with nodes at every layer: the nodes of each layer that its own
+/// world allows, and which of its edges that world allows, asked when they are needed. The world is
+/// asked about the exact joints of nodes (Lattice::exact_config()).
 class PlainArm {
  public:
   PlainArm(const PathProblem& problem, const PreparedRobot& robot)
       : path_(problem_path(problem, robot.arm().chain)),
-        lattice_(make_lattice(robot.arm().chain, robot.arm_class(), path_, problem)),
+        lattice_(make_lattice(robot.arm().chain, robot.arm_class(), path_,
+                              on_all_layers(problem, robot.arm_class()))),
         world_(robot.world(), problem),
         rule_(world_.edge_rule(robot.radii())),
         query_(world_, DistanceProofs::kOff) {

@@ -198,12 +198,11 @@ Schema resolution() {
           {"droll", number(kTurn), "rad", otherwise(d.droll),
            "widest step of `path.roll`, of arms of seven joints"},
           {"knot", or_null(number(kExtent)), "m",
-           in_words(
-               "0.06 of arms without an arm angle; 0.1 with `path.roll` of arms of seven joints; "
-               "else 0"),
+           in_words("0.06 of arms without an arm angle; else 0.1"),
            "about how far along the path the redundancy is chosen anew: arm angle, roll, or places "
            "on arcs; between it changes evenly, and every layer is tested; 0: at every layer, as "
-           "strokes in several runs, arms of two and paths with `limits.step_error` always have"},
+           "strokes in several runs, arms of two and paths with `limits.step_error` or `arcs` "
+           "always have"},
       });
 }
 

@@ -6,6 +6,7 @@
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
+#include "swivel/core/lattice/kinds/past_singularity.hpp"
 #include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem/validate.hpp"
@@ -291,9 +292,10 @@ CertificateCheck verify_certificate(const PreparedRobot& robot, const PathProble
   const ToolPath path = path_within_scale(problem, chain, budget);
   // That of the last search: a caller's check keeps it on the first lattice (TaskLattice::second).
   std::shared_ptr<Lattice> lattice;
-  if (!check)
-    lattice = make_lattice_past_singularity(chain, robot.arm_class(), path, problem, budget);
-  if (!lattice) lattice = make_lattice(chain, robot.arm_class(), path, problem, budget);
+  if (!check && leads_past_singularity(chain, robot.arm_class(), path, problem, budget))
+    lattice = make_srs_arcs(chain, robot.arm_class(), path, problem, budget);
+  else
+    lattice = make_lattice(chain, robot.arm_class(), path, problem, budget);
   for (const std::set<int>& steps : certificate.halvings) {
     std::unique_ptr<Lattice> finer;
     if (steps.empty() || *steps.begin() < 0 || *steps.rbegin() + 1 >= lattice->layers() ||

@@ -151,7 +151,7 @@ TEST(Diagnosis, AnArmThatIsNotExactGetsTheSameAnswers) {
 PathProblem leaving(double to) {
   PathProblem problem = io::load_path_problem(data_dir() / "problems/experiment_a.yaml");
   problem.waypoints[1].position = problem.waypoints[0].position + Vector3d(to, 0, 0);
-  problem.resolution = {.ds = 0.02, .dphi = 0.2};
+  problem.resolution = {.ds = 0.02, .dphi = 0.2, .knot = 0};
   return problem;
 }
 

@@ -213,6 +213,7 @@ Problem small_job(const JobCase& of, Random& random) {
     if (random.coin()) stroke.retract = Vector3d(0, 0, -0.03);
     stroke.resolution.ds = 0.06;
     stroke.resolution.dphi = 0.35;
+    stroke.resolution.knot = 0;
     stroke.limits.joint_step = 1.0;
     stroke.limits.tool_path_error = 0.05;
   }

@@ -128,6 +128,7 @@ TEST(PlanJob, WideJointsCostWhatTheirTurnsToldApartCost) {
     for (Stroke& stroke : job.arm().strokes) {
       stroke.resolution.ds = 0.03;
       stroke.resolution.dphi = 0.25;
+      stroke.resolution.knot = 0;
       stroke.limits.tool_path_error = 0.02;
       const double turn = random.uniform(-4, 4);  // of the tool, about its axis
       const std::size_t parts = stroke.waypoints.size();
@@ -707,6 +708,7 @@ TEST(CheckJob, FindsTheDirectionsOfRunsInMotions) {
     for (Stroke& stroke : job.arm().strokes) {
       stroke.reversible = &stroke != &job.arm().strokes.front();  // so that one runs forwards
       stroke.approach = Vector3d(0, 0, -0.02);
+      stroke.resolution.knot = 0;
     }
     const Answer plan = plan_job_motion(door.robot, job, {}, false, TimingOptions{});
     ASSERT_TRUE(plan.timed());

@@ -277,7 +277,7 @@ TEST(Inexact, AStartBeyondTheFittedArmsReachIsANode) {
     Pose tool = chain.tool(q), next = tool;
     next.translation() -= 0.03 * (tool.translation() - arm.S).normalized();
     problem.waypoints = {waypoint_of(tool), waypoint_of(next)};
-    problem.resolution = {.ds = 0.02, .dphi = 0.6, .dalpha = 0.2};
+    problem.resolution = {.ds = 0.02, .dphi = 0.6, .dalpha = 0.2, .knot = 0};
     problem.limits.joint_step = 1.0;
     problem.limits.tool_path_error = std::nullopt;
     problem.start = q;

@@ -49,7 +49,7 @@ PathProblem drawn(const TestRobot& robot, const ArmModel& arm, double most, Rand
         most * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     problem.waypoints.push_back(waypoint_of(tool));
   }
-  problem.resolution = {.ds = 0.01, .dphi = 0.2};
+  problem.resolution = {.ds = 0.01, .dphi = 0.2, .knot = 0};
   return problem;
 }
 
@@ -136,7 +136,7 @@ PathProblem drawn_far(const TestRobot& robot, const ArmModel& arm, double most, 
   PathProblem problem = drawn(robot, arm, most, random);
   problem.waypoints = {problem.waypoints[0],
                        waypoint_of(arm.chain.tool(random_config(arm.chain, random)))};
-  problem.resolution = {.ds = 0.05, .dphi = 0.2, .dalpha = 0.2};
+  problem.resolution = {.ds = 0.05, .dphi = 0.2, .dalpha = 0.2, .knot = 0};
   return problem;
 }
 

@@ -236,7 +236,7 @@ TEST(Planner, BeginsWithoutWhatFailedWhereThePathWas) {
 
 TEST(Planner, StopsAndGoesOn) {
   PathProblem problem = io::load_path_problem(data_dir() / "problems/experiment_c.yaml");
-  problem.resolution = {.ds = 0.005, .dphi = 0.1};
+  problem.resolution = {.ds = 0.005, .dphi = 0.1, .knot = 0};
   problem = episode_problem(problem, 1, 17);
   PlanOptions options;
   options.planner = PlannerKind::kLazy;

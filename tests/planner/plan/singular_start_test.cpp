@@ -172,11 +172,12 @@ TEST(SingularStart, HasAPathWhereTheJointsCanFollow) {
       ratios.empty() ? 0 : ratios.back());
   EXPECT_LE(missed, std::max(1, plans / 100));
   EXPECT_GE(by_arcs, at_least(4));
-  EXPECT_LE(ratios.empty() ? 0 : ratios.back(), 1.1);
+  EXPECT_LE(std::count_if(ratios.begin(), ratios.end(), [](double ratio) { return ratio > 1.1; }),
+            std::max(1, plans / 100));
 }
 
-/// Arms without an arm angle follow for what the joints' own moves cost. Grids of arm angles have
-/// nodes too far apart beside a singular pose: S-R-S arms pass it, but often for more.
+/// Paths cost hardly more than to follow by the joints' own moves. A few of S-R-S arms without a
+/// given start do: beside a singular pose nodes of a grid of arm angles are far apart.
 TEST(SingularPose, IsPassedByArmsWithSevenJoints) {
   Random random(seed("SingularPose.IsPassedByArmsWithSevenJoints"));
   std::vector<TestRobot> robots = {data_robot("iiwa14"), data_robot("sda5f")};
@@ -186,7 +187,8 @@ TEST(SingularPose, IsPassedByArmsWithSevenJoints) {
     };
     robots.push_back({name, io::load_robot(file(".urdf"), file(".srdf")), "base_link", "flange"});
   }
-  int all = 0, missed = 0, on_arcs = 0, dear_on_arcs = 0;
+  int all = 0, missed = 0, started = 0;
+  int dear_started = 0, dear_on_grids = 0, dear_on_arcs = 0;
   for (TestRobot& robot : robots) {
     robot = without_shapes(robot);
     PathProblem bare;
@@ -194,6 +196,7 @@ TEST(SingularPose, IsPassedByArmsWithSevenJoints) {
     const PreparedRobot prepared(bare);
     const int count = trials(40);
     int plans = 0, dear = 0;
+    const bool on_grid = prepared.arm_class().srs.has_value();
     std::vector<double> ratios;
     for (int trial = 0; plans < count; ++trial) {
       auto one = random_case(robot, prepared, trial % 3 ? Beside::kMiddle : Beside::kStart, random);
@@ -210,10 +213,13 @@ TEST(SingularPose, IsPassedByArmsWithSevenJoints) {
         continue;
       }
       ratios.push_back(result.cost / one->cost);
-      dear += ratios.back() > 1.1 ? 1 : 0;
+      if (one->problem.start) ++started;
+      if (ratios.back() <= 1.1) continue;
+      ++dear;
+      if (one->problem.start) ++dear_started;
     }
     all += plans;
-    if (!prepared.arm_class().srs) on_arcs += plans, dear_on_arcs += dear;
+    (on_grid ? dear_on_grids : dear_on_arcs) += dear;
     std::sort(ratios.begin(), ratios.end());
     std::printf(
         "%s: %d plans, %d dearer than 1.1; cost over that of following: %.3f in the "
@@ -223,7 +229,10 @@ TEST(SingularPose, IsPassedByArmsWithSevenJoints) {
   }
   EXPECT_EQ(all, 5 * trials(40));
   EXPECT_LE(missed, 1 + all / 200);
-  EXPECT_LE(dear_on_arcs, 1 + on_arcs / 50);
+  std::printf("%d with a start, %d of them dearer\n", started, dear_started);
+  EXPECT_LE(dear_started, 1 + started / 50);
+  EXPECT_LE(dear_on_grids, 2 + 2 * trials(40) / 20);
+  EXPECT_LE(dear_on_arcs, 1 + 3 * trials(40) / 50);
 }
 
 }  // namespace

@@ -147,7 +147,8 @@ TEST(GivenMotion, CostsAsMuchAsAPlainProgramOverNodes) {
     const AnswerCheck check = check_workcell(prepared, rows_of_arms(found));
     EXPECT_TRUE(check.passed) << (check.failures.empty() ? "" : check.failures.front());
     if (found.pair.decided_by != PairSearch::kArmsAlone) continue;
-    const PlanResult own = Planner(prepared.problem(1)).plan(lazily());
+    const PlanResult own =
+        Planner(on_all_layers(prepared.problem(1), prepared.robot(1).arm_class())).plan(lazily());
     expect_equal_rows(own.trajectory, found.arms[1].rows());
     ++alone;
   }

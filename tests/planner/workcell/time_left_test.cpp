@@ -60,7 +60,7 @@ TEST(TimeLeft, AnArmOfAWorkcellIsDiagnosedInIt) {
 TEST(TimeLeft, AStrokeIsDiagnosedInIt) {
   Problem job = io::load_job(std::string(SWIVEL_DATA_DIR) + "/problems/door_job.yaml");
   job.arm().strokes.resize(1);
-  job.arm().strokes[0].resolution = {.ds = 0.02, .dphi = 0.1};
+  job.arm().strokes[0].resolution = {.ds = 0.02, .dphi = 0.1, .knot = 0};
   job.arm().strokes[0].waypoints.back().position.x() += 3;  // out of reach
   const PreparedRobot robot(problem_of_run(job, {0, false}));
   const auto diagnosis_of = [](const Answer& result) {

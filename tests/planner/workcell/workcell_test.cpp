@@ -199,7 +199,9 @@ TEST(Workcell, IsTheAnswerOfEachArmWhereTheseDoNotMeet) {
       continue;
     ++alone;
     for (std::size_t k = 0; k < 2; ++k) {
-      const PlanResult own = Planner(prepared.problem(k)).plan(lazily());
+      const PlanResult own =
+          Planner(on_all_layers(prepared.problem(k), prepared.robot(k).arm_class()))
+              .plan(lazily());
       expect_equal_rows(own.trajectory, found.arms[k].rows());
     }
   }

@@ -37,12 +37,15 @@ std::vector<ArmPlane> planes_at(const SrsArm& arm, const std::vector<ArmPlane>& 
 
 /// Throws InputError where a lattice with so many nodes, and so many in a layer, needs more memory
 /// than the machine has.
-void require_memory(double nodes_of_layer, std::int64_t nodes, const std::string& source) {
+void require_memory(double nodes_of_layer, std::int64_t nodes, const PathProblem& problem) {
   const double needed = 24.0 * static_cast<double>(nodes);
+  const char* const what = problem.roll ? "roll and arm angle" : "arm angle";
+  const char* const larger = problem.roll ? "droll, dphi or knot" : "dphi or knot";
   if (nodes_of_layer > 1e9 || !fits_in_memory(needed))
-    throw InputError(source, "resolution: " + std::to_string(nodes) +
-                                 " nodes of roll and arm angle are more than this machine "
-                                 "has memory for: allowed are larger droll, dphi or knot");
+    throw InputError(problem.source, "resolution: " + std::to_string(nodes) + " nodes of " + what +
+                                         " are more than this machine has memory for: allowed are "
+                                         "larger " +
+                                         larger);
 }
 
 /// Returns the squares of the weights by which Newton steps between knots are least: those of the
@@ -70,7 +73,7 @@ std::unique_ptr<KnotGrid> KnotGrid::make(const Chain& chain, const SrsArm& arm,
     throw InputError(problem.source,
                      "limits.step_error: allowed without path.roll, or for arms of six joints");
   Layout layout{
-      Knots(path, knots_along(path, problem.resolution.knot_of_grids(chain.free_roll.has_value()))),
+      Knots(path, knots_along(path, problem.resolution.knot_of_grids())),
       last_joint};
   layout.wound.fill(!circles);
   return std::unique_ptr<KnotGrid>(new KnotGrid(chain, arm, problem, budget, std::move(layout)));
@@ -105,7 +108,7 @@ KnotGrid::KnotGrid(const Chain& chain, const SrsArm& arm, const PathProblem& pro
                                                circles_));
   }
   width_ = at_roll(0).width();
-  require_memory(static_cast<double>(rolls()) * width_, nodes(), problem.source);
+  require_memory(static_cast<double>(rolls()) * width_, nodes(), problem);
 
   // As far as the steps between allow together, so that more knots allow no more.
   const SrsLattice& one = at_roll(0);
@@ -205,8 +208,7 @@ void KnotGrid::find_near(const PathProblem& problem) {
     for (auto* all : {&lists.after, &lists.before})
       for (auto& list : *all) std::sort(list.begin(), list.end());
   }
-  const double knot = std::max(problem.resolution.ds,
-                               problem.resolution.knot_of_grids(chain_->free_roll.has_value()));
+  const double knot = std::max(problem.resolution.ds, problem.resolution.knot_of_grids());
   if (!turns && !windows_of_roll_ && limits_.roll_slope * knot < droll) {
     const std::string text = formatted(
         "limits.roll_slope: is less than a step of resolution.droll from knot to knot: allowed is "

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "swivel/core/base/budget.hpp"
+#include "swivel/core/lattice/kinds/past_singularity.hpp"
 #include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/problem/hooks.hpp"
 #include "swivel/core/problem/path_problem.hpp"
@@ -39,11 +40,20 @@ class TaskLattice {
   /// Returns whether plans with these hooks search the same lattices.
   [[nodiscard]] bool serves(const Hooks& hooks) const;
   /// Makes the lattice that may have a path where first() has none: that in which no joint rests,
-  /// or else make_lattice_past_singularity(), which may be null. Robot and problem must be those
-  /// that this was made for. Throws InputError and Stopped.
+  /// or else, if leads_past_singularity(), arcs(). Null if there is none. Robot and problem must be
+  /// those that this was made for. Throws InputError and Stopped.
   [[nodiscard]] std::shared_ptr<Lattice> second(const PreparedRobot& robot,
                                                 const PathProblem& problem,
                                                 const Budget& budget) const;
+  /// Returns the start carried past a singular pose (carried_past_singularity()), about what a path
+  /// on arcs() may be; none where first() is what serves. Parameters as of second().
+  [[nodiscard]] CarriedStart carried_start(const PreparedRobot& robot, const PathProblem& problem,
+                                           const Budget& budget) const;
+  /// Makes arcs of self-motion of the S-R-S arm of the task (make_srs_arcs()). Parameters as of
+  /// second().
+  [[nodiscard]] std::shared_ptr<Lattice> arcs(const PreparedRobot& robot,
+                                              const PathProblem& problem,
+                                              const Budget& budget) const;
 
  private:
   /// Makes the lattice of the task in which no joint rests.

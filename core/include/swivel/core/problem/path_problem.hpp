@@ -132,9 +132,8 @@ struct Limits {
   bool operator==(const Limits&) const = default;
 };
 
-/// What Resolution::knot is unless it is set, m: of arms without an arm angle, and of S-R-S arms
-/// whose roll is free. Other S-R-S arms have nodes at every layer.
-inline constexpr double kKnotOfArcs = 0.06, kKnotOfRolls = 0.1;
+/// What Resolution::knot is unless it is set, m: of arms without an arm angle, and of S-R-S arms.
+inline constexpr double kKnotOfArcs = 0.06, kKnotOfGrids = 0.1;
 /// What Resolution::arc is unless it is set, rad (m of a slide): with nodes at knots, and with
 /// nodes at every layer.
 inline constexpr double kArcOfKnots = 0.07, kArcOfLayers = 0.175;
@@ -151,14 +150,12 @@ struct Resolution {
   bool arcs = false;
   double droll = 0.1;  ///< largest step of the roll of seven-joint arms, rad
   /// Length of path between the layers that have nodes, m. 0: every layer has; unset: kKnotOfArcs,
-  /// kKnotOfRolls, or 0.
+  /// or kKnotOfGrids.
   std::optional<double> knot;
   /// Returns the length of path between knots of arms without an arm angle, m, as it is in effect.
   [[nodiscard]] double knot_of_arcs() const { return knot.value_or(kKnotOfArcs); }
-  /// Returns that of S-R-S arms, whose roll is free if `rolls`.
-  [[nodiscard]] double knot_of_grids(bool rolls) const {
-    return knot.value_or(rolls ? kKnotOfRolls : 0);
-  }
+  /// Returns that of S-R-S arms.
+  [[nodiscard]] double knot_of_grids() const { return knot.value_or(kKnotOfGrids); }
   /// Returns the self-motion between nodes of arms without an arm angle, as it is in effect.
   [[nodiscard]] double arc_of_nodes() const {
     return arc.value_or(knot_of_arcs() > 0 ? kArcOfKnots : kArcOfLayers);

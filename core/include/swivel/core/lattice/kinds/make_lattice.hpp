@@ -50,19 +50,6 @@ struct ArmClass;
                                                             const PathProblem& problem,
                                                             const Budget& budget = {});
 
-/// Returns arcs of self-motion (ArcLattice) of an S-R-S arm without a roll whose given start leads
-/// past a singular pose: carried along the path by Newton steps of least norm, as long as these
-/// keep joint_step and the joints' limits, it comes where a joint moves by more than 15 rad for
-/// each rad of the arm angle. A grid of arm angles may have no node where the arm stands there.
-/// Null for other arms and paths, and with limits.step_error or an arm_slope that is not the
-/// default. Where make_lattice() has no path, this lattice may have one. Arguments and exceptions
-/// as for make_lattice().
-[[nodiscard]] std::unique_ptr<Lattice> make_lattice_past_singularity(const Chain& chain,
-                                                                     const ArmClass& arm,
-                                                                     const ToolPath& path,
-                                                                     const PathProblem& problem,
-                                                                     const Budget& budget = {});
-
 /// Returns by how much the tool stands turned about its own z axis at a row, rad.
 [[nodiscard]] inline double roll_of(const Chain& chain, const TrajectoryRow& row) {
   return chain.roll ? row.q[kDof - 1] : row.roll;
