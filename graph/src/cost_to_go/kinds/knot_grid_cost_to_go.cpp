@@ -328,9 +328,8 @@ void KnotGridCostToGo::begin(int layer, Values& out) {
 }
 
 std::size_t KnotGridCostToGo::many(int layer) const {
-  static_cast<void>(layer);
-  constexpr std::size_t kMany = 256;
-  return kMany;
+  constexpr std::size_t kMany = 256, kPart = 16;
+  return std::min(kMany, static_cast<std::size_t>(lattice_->slots(layer)) / kPart);
 }
 
 void KnotGridCostToGo::find_stale(int layer, const std::vector<Change>& ahead,
