@@ -224,7 +224,7 @@ void run(benchmark::State& state, const Scene& scene, const Case& what,
   PathProblem problem = prepared(scene).problem;
   bench::set_resolution(problem, setting);
   // `eager` is measured on the paper's lattice, with nodes at every layer
-  if (!prepared(scene).robot.arm_class().srs) problem.resolution.knot = 0;
+  if (!problem.roll) problem.resolution.knot = 0;
   problem.limits.edges = what.edges;
   const auto eager_times = [&](PlannerKind planner, bool asked) {
     return EagerTimes{scene, problem, planner, label_of(scene, {planner, what.edges, 1}, setting),
