@@ -405,7 +405,33 @@ void Constraints::measure_by_rows(Cause& cause, int constraint, int layer, int a
     cause.value =
         cause.unwinds ? from[k] + wrap_angle(interpolated.q[k] - from[k]) : interpolated.q[k];
   }
+  if (cause.kind == Cause::Kind::kJointStep)
+    measure_step(cause, layer, longest_move(layer, a, qa, b, qb));
   cause.between_layers = cause.kind != Cause::Kind::kArmSlope;
+}
+
+/// Returns the move from row to row between two nodes that is the longest for what joints may move
+/// in one layer. Where none is too long, the chord is for all layers together: returns the share of
+/// one.
+Config Constraints::longest_move(int layer, int a, const Config& qa, int b,
+                                 const Config& qb) const {
+  const Lattice::InterpolatedEdge interpolated = lattice_.interpolate_edge(layer, a, qa, b, qb);
+  std::vector<Config> rows{qa};
+  rows.insert(rows.end(), interpolated.rows.begin(), interpolated.rows.end());
+  if (interpolated.fault == Lattice::InterpolatedEdge::Fault::kNone) rows.push_back(qb);
+  if (interpolated.fault == Lattice::InterpolatedEdge::Fault::kStep)
+    rows.push_back(interpolated.q);
+  const Eigen::Index joints = lattice_.chain().roll ? kDof - 1 : kDof;  // as measure_step()
+  Config longest = lattice_.delta(qa, qb) /
+                   (lattice_.layer_of_rows(layer + 1) - lattice_.layer_of_rows(layer));
+  double most = 1;
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    const Config move = lattice_.delta(rows[k - 1], rows[k]);
+    const double part =
+        move.head(joints).cwiseAbs().cwiseQuotient(joint_steps_.head(joints)).maxCoeff();
+    if (part > most) longest = move, most = part;
+  }
+  return longest;
 }
 
 /// Names the joint of a move by `delta` that moves furthest, or furthest for its speed, and

@@ -157,6 +157,8 @@ class Constraints {
   void measure_contact(Cause& cause, int layer, int a, const Config& qa, int b, const Config& qb);
   void measure_by_rows(Cause& cause, int constraint, int layer, int a, const Config& qa, int b,
                        const Config& qb) const;
+  [[nodiscard]] Config longest_move(int layer, int a, const Config& qa, int b,
+                                    const Config& qb) const;
   void measure_step(Cause& cause, int layer, const Config& delta) const;
 
   const Lattice& lattice_;

@@ -223,6 +223,28 @@ TEST(Diagnosis, SaysByHowMuchAJointIsOutsideItsLimits) {
   EXPECT_GE(checked, 3);
 }
 
+/// With nodes at every layer and at knots, on grids and on arcs.
+TEST(Diagnosis, SaysHowFarAJointWouldMoveInOneLayer) {
+  for (const char* const name : {"iiwa14_bench", "panda_weld_seam", "gen3_glue_bead"})
+    for (const std::optional<double> knot : {std::optional<double>(), std::optional(0.0)}) {
+      SCOPED_TRACE(std::string(name) + (knot ? " at every layer" : " at knots"));
+      PathProblem problem =
+          io::load_path_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
+      problem.limits.joint_step = 1e-4;
+      problem.resolution.knot = knot;
+      PlanOptions options;
+      options.evidence = Evidence::all();
+      const PlanResult result = plan(problem, options);
+      ASSERT_EQ(result.status, PlanStatus::kInfeasible);
+      const Cause& cause = diagnosis_of(result).cause;
+      ASSERT_EQ(cause.kind, Cause::Kind::kJointStep) << words(cause);
+      EXPECT_FALSE(cause.joint.empty());
+      ASSERT_TRUE(cause.value && cause.limit);
+      EXPECT_EQ(*cause.limit, 1e-4);
+      EXPECT_GT(*cause.value, *cause.limit);
+    }
+}
+
 /// The layers that are looked at end at a count, not at a clock, and the answer says where.
 TEST(Diagnosis, EndsAtAFixedCountAndSaysSo) {
   PathProblem problem = leaving(0.8);
