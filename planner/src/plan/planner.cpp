@@ -142,7 +142,9 @@ struct Planner::Impl {
     /// limits of joints that are treated as circles, each in its nearest turn, because joint 7 at
     /// rest had no path, or because a start beside a singular pose asked for arcs of self-motion.
     std::optional<Searched> second;
-    std::optional<CarriedStart> carried;  // TaskLattice::carried_start(), where it was asked for
+    // Answers of TaskLattice, where they were asked for.
+    std::optional<bool> has_second;
+    std::optional<CarriedStart> carried;
     [[nodiscard]] Searched& last() { return second ? *second : first; }
   };
   std::unique_ptr<Layout> layout;
@@ -314,13 +316,15 @@ struct Planner::Impl {
       if (!first->outcome.path.empty())
         return or_cheaper_arcs(*std::move(first), rule, options, budget, result);
     }
-    const auto make = [&] { return layout->task->second(*robot, problem, budget); };
-    const std::shared_ptr<Lattice> second = single_use ? make() : layout->lattices.second(make);
-    return second ? search_second(second, rule, options, budget, result) : *std::move(first);
+    if (!layout->has_second)
+      layout->has_second = layout->task->has_second(*robot, problem, budget);
+    return *layout->has_second ? search_second(rule, options, budget, result) : *std::move(first);
   }
-  /// Searches a lattice after layout->first.
-  Found search_second(const std::shared_ptr<Lattice>& lattice, const EdgeRule& rule,
-                      const PlanOptions& options, const Budget& budget, PlanResult& result) {
+  /// Searches TaskLattice::second() after layout->first.
+  Found search_second(const EdgeRule& rule, const PlanOptions& options, const Budget& budget,
+                      PlanResult& result) {
+    const auto make = [&] { return layout->task->second(*robot, problem, budget); };
+    const std::shared_ptr<Lattice> lattice = single_use ? make() : layout->lattices.second(make);
     layout->second = Searched{lattice, nullptr};
     result.lattice = info_of(*lattice, robot->arm_class());
     Found found = search_knots(*layout->second, rule, options, budget, result);
@@ -343,9 +347,7 @@ struct Planner::Impl {
     const std::vector<std::string> warnings = result.warnings;
     try {
       const Budget time = most_of(budget, options);
-      const auto make = [&] { return layout->task->arcs(*robot, problem, time); };
-      const std::shared_ptr<Lattice> arcs = single_use ? make() : layout->lattices.second(make);
-      Found found = search_second(arcs, rule, options, time, result);
+      Found found = search_second(rule, options, time, result);
       if (found.decided && !found.outcome.path.empty() && cost_of(found) < cost) return found;
     } catch (const Stopped&) {  // the path that was found first is the answer
     }

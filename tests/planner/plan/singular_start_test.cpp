@@ -176,6 +176,63 @@ TEST(SingularStart, HasAPathWhereTheJointsCanFollow) {
             std::max(1, plans / 100));
 }
 
+/// A planner that plans again among moving bodies answers as a fresh one, and so do two threads;
+/// one that is stopped has a path that passes the check, or none.
+TEST(SingularStart, PlansAgainAndStopsAsOtherPathsDo) {
+  Random random(seed("SingularStart.PlansAgainAndStopsAsOtherPathsDo"));
+  const TestRobot robot = data_robot("iiwa14");
+  int plans = 0, by_arcs = 0, stopped = 0, dearer = 0, none = 0;
+  const int count = trials(24);
+  for (int trial = 0; trial < count;) {
+    PathProblem bare;
+    bare.model = robot.model, bare.base_link = robot.base_link, bare.tip_link = robot.tip_link;
+    auto one = random_case(robot, PreparedRobot(bare), Beside::kStart, random);
+    if (!one) continue;
+    const std::string what = "trial " + std::to_string(trial++);
+    PathProblem& problem = one->problem;
+    problem.limits.clearance = 1e-3;
+    const Vector3d near = problem.waypoints.back().position;
+    const auto anywhere = [&] {
+      Pose pose = Pose::Identity();
+      for (int k = 0; k < 3; ++k) pose.translation()[k] = near[k] + random.uniform(-0.5, 0.5);
+      return pose;
+    };
+    problem.scene.push_back({"ball", Sphere{0.1}, anywhere(), {}});
+    Planner planner(problem);
+    for (int move = 0; move < 4; ++move) {
+      if (move > 0) planner.move("ball", anywhere());
+      PlanOptions options;
+      options.planner = PlannerKind::kLazy;
+      const PlanResult again = planner.plan(options), fresh = plan(planner.problem(), options);
+      options.planner = PlannerKind::kParallel;
+      options.threads = 2;
+      const PlanResult parallel = plan(planner.problem(), options);
+      for (const PlanResult& other : {fresh, parallel}) {
+        ASSERT_EQ(again.status, other.status) << what;
+        ASSERT_EQ(again.cost, other.cost) << what;
+        ASSERT_EQ(again.lattice.nodes, other.lattice.nodes) << what;
+        ASSERT_EQ(again.trajectory.size(), other.trajectory.size()) << what;
+        for (std::size_t k = 0; k < again.trajectory.size(); ++k)
+          ASSERT_EQ(again.trajectory[k].q, other.trajectory[k].q) << what;
+      }
+      ++plans;
+      by_arcs += again.status == PlanStatus::kSolved && !again.lattice.grid;
+      none += again.status == PlanStatus::kInfeasible;
+      options.timeout_s = random.uniform(0, 0.02);
+      const PlanResult hurried = plan(planner.problem(), options);
+      stopped += hurried.status == PlanStatus::kTimeout;
+      dearer += hurried.status == PlanStatus::kSolved && hurried.cost > again.cost;
+      if (hurried.status != PlanStatus::kSolved) continue;
+      ASSERT_GE(hurried.cost, again.cost) << what;
+      ASSERT_TRUE(check_trajectory(planner.problem(), hurried.trajectory).passed) << what;
+    }
+  }
+  std::printf("%d plans, %d by arcs, %d without a path, %d stopped, %d with a dearer path then\n",
+              plans, by_arcs, none, stopped, dearer);
+  EXPECT_GE(by_arcs, at_least(count / 4));
+  EXPECT_GE(stopped + dearer, at_least(count / 12));
+}
+
 /// Paths cost hardly more than to follow by the joints' own moves. A few of S-R-S arms without a
 /// given start do: beside a singular pose nodes of a grid of arm angles are far apart.
 TEST(SingularPose, IsPassedByArmsWithSevenJoints) {

@@ -25,8 +25,7 @@ class SearchedLattices {
   [[nodiscard]] Ptr with_knots(const Ptr& from, const std::set<int>& steps, const Budget& budget);
   /// Returns Lattice::with_windings() of a lattice.
   [[nodiscard]] Ptr with_windings(const Ptr& from, const Lattice::Joints& joints);
-  /// Returns the lattice that is searched second, which `make` makes; null where there is none.
-  /// Throws as `make` does.
+  /// Returns the lattice that is searched second, which `make` makes. Throws as `make` does.
   [[nodiscard]] Ptr second(const std::function<Ptr()>& make);
   /// Forgets lattices until few are left, those asked for last; references by memory_of() end.
   void forget_old();

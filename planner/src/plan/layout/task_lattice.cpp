@@ -51,26 +51,25 @@ std::shared_ptr<Lattice> TaskLattice::free_lattice(const PreparedRobot& robot,
   return turns_told_apart_ && robot.arm_class().srs ? with_all_windings(lattice) : lattice;
 }
 
+bool TaskLattice::has_second(const PreparedRobot& robot, const PathProblem& problem,
+                             const Budget& budget) const {
+  // Arcs treat as circles what a caller's hook may tell apart.
+  return coaxial_ || (!turns_told_apart_ && leads_past_singularity(robot.arm().chain,
+                                                                   robot.arm_class(), path_,
+                                                                   problem, budget));
+}
+
 std::shared_ptr<Lattice> TaskLattice::second(const PreparedRobot& robot, const PathProblem& problem,
                                              const Budget& budget) const {
   if (coaxial_) return free_lattice(robot, problem, budget);
-  // Arcs treat as circles what a caller's hook may tell apart.
-  if (turns_told_apart_ || !leads_past_singularity(robot.arm().chain, robot.arm_class(), path_,
-                                                   problem, budget))
-    return nullptr;
-  return arcs(robot, problem, budget);
+  return make_srs_arcs(robot.arm().chain, robot.arm_class(), path_,
+                       states_cost_ ? on_all_layers(problem, robot.arm_class()) : problem, budget);
 }
 
 CarriedStart TaskLattice::carried_start(const PreparedRobot& robot, const PathProblem& problem,
                                         const Budget& budget) const {
   if (coaxial_ || turns_told_apart_ || states_cost_) return {};
   return carried_past_singularity(*first_, robot.arm_class(), problem, budget);
-}
-
-std::shared_ptr<Lattice> TaskLattice::arcs(const PreparedRobot& robot, const PathProblem& problem,
-                                           const Budget& budget) const {
-  return make_srs_arcs(robot.arm().chain, robot.arm_class(), path_,
-                       states_cost_ ? on_all_layers(problem, robot.arm_class()) : problem, budget);
 }
 
 }  // namespace swivel

@@ -39,21 +39,21 @@ class TaskLattice {
   [[nodiscard]] bool states_cost() const { return states_cost_; }
   /// Returns whether plans with these hooks search the same lattices.
   [[nodiscard]] bool serves(const Hooks& hooks) const;
-  /// Makes the lattice that may have a path where first() has none: that in which no joint rests,
-  /// or else, if leads_past_singularity(), arcs(). Null if there is none. Robot and problem must be
-  /// those that this was made for. Throws InputError and Stopped.
+  /// Returns whether second() may have a path where first() has none: where a joint rests in
+  /// first(), or if leads_past_singularity(). Robot and problem must be those that this was made
+  /// for. Throws InputError and Stopped.
+  [[nodiscard]] bool has_second(const PreparedRobot& robot, const PathProblem& problem,
+                                const Budget& budget) const;
+  /// Makes the lattice that is searched second: that in which no joint rests, where one rests in
+  /// first(), or else arcs of self-motion of an S-R-S arm (make_srs_arcs()). Parameters as of
+  /// has_second().
   [[nodiscard]] std::shared_ptr<Lattice> second(const PreparedRobot& robot,
                                                 const PathProblem& problem,
                                                 const Budget& budget) const;
   /// Returns the start carried past a singular pose (carried_past_singularity()), about what a path
-  /// on arcs() may be; none where first() is what serves. Parameters as of second().
+  /// of second() may be; none where first() is what serves. Parameters as of has_second().
   [[nodiscard]] CarriedStart carried_start(const PreparedRobot& robot, const PathProblem& problem,
                                            const Budget& budget) const;
-  /// Makes arcs of self-motion of the S-R-S arm of the task (make_srs_arcs()). Parameters as of
-  /// second().
-  [[nodiscard]] std::shared_ptr<Lattice> arcs(const PreparedRobot& robot,
-                                              const PathProblem& problem,
-                                              const Budget& budget) const;
 
  private:
   /// Makes the lattice of the task in which no joint rests.
