@@ -2,7 +2,7 @@
 // Measures how near refined paths come to the optimum of their basin, on random poses: their cost
 // divided by that of a fine lattice about them (basin_lattice.hpp).
 //
-//   basin_benchmark PROBLEM.yaml [--episodes N] [--first N] [--metric l2|max|time]
+//   basin_benchmark PROBLEM.yaml [--episodes N] [--first N] [--metric l2|l1|max|time]
 //                   [--about] [--margins]
 //       --about      use lattices that have the refined path among their nodes
 //       --margins    nodes also keep the margins that refinement keeps
@@ -89,8 +89,10 @@ void run(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  const std::map<std::string, CostMetric> metrics{
-      {"l2", CostMetric::kL2}, {"max", CostMetric::kMax}, {"time", CostMetric::kTime}};
+  const std::map<std::string, CostMetric> metrics{{"l2", CostMetric::kL2},
+                                                  {"l1", CostMetric::kL1},
+                                                  {"max", CostMetric::kMax},
+                                                  {"time", CostMetric::kTime}};
   CLI::App app(
       "How near refined paths come to the optimum of their basin: their cost over that of a fine "
       "lattice about them.",

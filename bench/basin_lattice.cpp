@@ -93,8 +93,9 @@ void BasinLattice::price(std::size_t stride, int layer) {
           std::abs(coordinate(from + 1, b) - coordinate(from, a)) > redundancy_->most_change())
         return;
       const Config move = scale.cwiseProduct(q.q - p.q);
-      sum += lattice_->cost().metric == CostMetric::kL2 ? joint_norm(move)
-                                                        : move.lpNorm<Eigen::Infinity>();
+      sum += lattice_->cost().metric == CostMetric::kL2   ? joint_norm(move)
+             : lattice_->cost().metric == CostMetric::kL1 ? move.lpNorm<1>()
+                                                          : move.lpNorm<Eigen::Infinity>();
     }
     cost(e) = static_cast<float>(sum);
   });

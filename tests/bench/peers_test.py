@@ -70,14 +70,16 @@ class Peers(unittest.TestCase):
 
     def test_lengths_beside_those_published(self):
         printed = published()
-        most = {"fetch_arm__circle": 1.06, "fetch_arm__s": 1.06, "fetch_arm__square": 1.02}
+        most = {"fetch_arm__circle": 1.01}
         for name, (turned, slid) in peers.TORM.items():
             self.assertEqual(cell(printed[name], "verdict"), "solved")
             self.assertLessEqual(float(cell(printed[name], "largest step, °")), 7)
             self.assertLessEqual(float(cell(printed[name], "refined over plan")), 1)
             if turned and not name.startswith("fetch__"):
-                length = float(cell(printed[name], "refined, L1"))
+                length = float(cell(printed[name], "`l1`: refined"))
                 self.assertLess(length, most.get(name, 1) * turned, name)
+                self.assertLess(float(cell(printed[name], "`l1`: plan")), 1.04 * length, name)
+                self.assertLess(length, float(cell(printed[name], "`l2`: L1, refined")), name)
         for name, count in peers.IKLINK.items():
             self.assertLess(int(cell(printed[name], "lift-offs")), count)
 

@@ -442,7 +442,8 @@ TEST(Lattice, CostsAreMultiplesOfTwoToTheMinusForty) {
   Random random(seed("Lattice.Costs"));
   const Chain chain = arm_of(robot).chain;
   const Config q0 = random_config(chain, random);
-  for (const CostMetric metric : {CostMetric::kL2, CostMetric::kMax, CostMetric::kTime}) {
+  for (const CostMetric metric :
+       {CostMetric::kL2, CostMetric::kL1, CostMetric::kMax, CostMetric::kTime}) {
     Small small(robot, q0, q0 + 0.1 * Config::Ones(), {.ds = 0.01, .dphi = 0.2, .dalpha = 0.1});
     small.problem.cost.metric = metric;
     small.rebuild();
@@ -453,6 +454,7 @@ TEST(Lattice, CostsAreMultiplesOfTwoToTheMinusForty) {
       EXPECT_EQ(std::ldexp(cost, 40), std::round(std::ldexp(cost, 40)));
       EXPECT_EQ(cost, small.lattice->edge_cost(-delta));
       const double plain = metric == CostMetric::kL2    ? joint_norm(delta)
+                           : metric == CostMetric::kL1  ? delta.lpNorm<1>()
                            : metric == CostMetric::kMax ? delta.lpNorm<Eigen::Infinity>()
                                                         : -1;
       EXPECT_TRUE(plain < 0 || std::abs(cost - plain) < 1e-12);
@@ -466,7 +468,7 @@ TEST(Lattice, CostsGrowWithTheWeightsToTheLastBit) {
   const Config q0 = random_config(arm_of(robot).chain, random);
   Small small(robot, q0, q0 + 0.1 * Config::Ones(), {.ds = 0.01, .dphi = 0.2, .dalpha = 0.1});
   EXPECT_EQ(small.lattice->cost_unit(), 1);
-  for (const CostMetric metric : {CostMetric::kL2, CostMetric::kMax})
+  for (const CostMetric metric : {CostMetric::kL2, CostMetric::kL1, CostMetric::kMax})
     for (int trial = 0; trial < trials(100); ++trial) {
       small.problem.cost.metric = metric;
       for (double& weight : small.problem.cost.weights.emplace())

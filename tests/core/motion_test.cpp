@@ -245,7 +245,7 @@ TEST(SmoothMinimum, NoSmallMoveInsideTheBoxesIsBetter) {
     for (double& weight : objective.weights) weight = random.uniform(0.2, 2);
     objective.bending = random.coin() ? 0.1 : 1e-3;
     objective.most_change = random.coin() ? 0.15 : 10;
-    objective.power = random.coin() ? 2 : 16;
+    objective.power = random.one_of({1, 2, 16});
     if (trial % 2 == 1)
       for (int i = 0; i < n; ++i) objective.roll.push_back(random.uniform(0, 0.5));
     std::vector<double> x;
@@ -257,6 +257,8 @@ TEST(SmoothMinimum, NoSmallMoveInsideTheBoxesIsBetter) {
     }
     const std::vector<double> found = smooth_minimum(waves, objective, boxes, x);
     const double least = smooth_cost(waves, objective, found);
+    // sums of magnitudes have tips, which are rounded off while the minimum is sought
+    const double rounding = objective.power == 1 ? 1e-5 : 1e-7;
     EXPECT_LE(least, smooth_cost(waves, objective, x));
     for (int i = 0; i < n; ++i) {
       const auto k = static_cast<std::size_t>(i);
@@ -273,7 +275,7 @@ TEST(SmoothMinimum, NoSmallMoveInsideTheBoxesIsBetter) {
                                        : random.uniform(-1e-3, 1e-3);
         other[k] = std::clamp(found[k] + by, boxes[k].low, boxes[k].high);
       }
-      EXPECT_GE(smooth_cost(waves, objective, other), least - 1e-7) << "trial " << trial;
+      EXPECT_GE(smooth_cost(waves, objective, other), least - rounding) << "trial " << trial;
     }
   }
   std::printf("%d coordinates inside their boxes, %d at bounds\n", inside, at_bounds);

@@ -92,7 +92,7 @@ class Problems(unittest.TestCase):
             "both rotations": lambda p: p["scene"][0].update(rpy=[0, 0, 0], quat=[1, 0, 0, 0]),
             "waypoints and a file": lambda p: p["path"].update(file="path.csv"),
             "five weights": lambda p: p.update(cost={"weights": [1] * 5}),
-            "another metric": lambda p: p.update(cost={"metric": "l1"}),
+            "another metric": lambda p: p.update(cost={"metric": "l3"}),
         }
         self.refuse(made_problem(walls=["wall"]) | {"limits": {}, "resolution": {}}, changes)
 

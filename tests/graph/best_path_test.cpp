@@ -95,7 +95,7 @@ PathProblem random_problem(const TestRobot& robot, const Chain& chain, Random& r
                         .dalpha = 10};
   problem.limits.arm_slope = 2 * problem.resolution.dphi / problem.resolution.ds;
   problem.limits.joint_step = random.uniform(0.3, 0.6);
-  problem.cost.metric = random.coin() ? CostMetric::kL2 : CostMetric::kMax;
+  problem.cost.metric = random.one_of({CostMetric::kL2, CostMetric::kL1, CostMetric::kMax});
   if (random.coin(0.2))
     problem.cost.weights = {0, 0, 0, 0, 0, 0, 0};  // all paths are equal, the first one wins
   if (random.coin(0.3)) problem.start = q0;

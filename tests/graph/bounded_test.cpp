@@ -33,8 +33,8 @@ PathProblem random_problem(const TestRobot& robot, const Chain& chain, Random& r
                         .dalpha = 10};
   problem.limits.arm_slope = random.uniform(1, 3) * problem.resolution.dphi / problem.resolution.ds;
   problem.limits.joint_step = random.uniform(0.2, 0.6);
-  problem.cost.metric = std::array{CostMetric::kL2, CostMetric::kMax,
-                                   CostMetric::kTime}[static_cast<std::size_t>(random.below(3))];
+  problem.cost.metric =
+      random.one_of({CostMetric::kL2, CostMetric::kL1, CostMetric::kMax, CostMetric::kTime});
   if (random.coin())
     for (double& weight : problem.cost.weights.emplace())
       weight = random.coin(0.1) ? 0 : random.uniform(0.1, 10);
@@ -344,7 +344,7 @@ std::vector<double> relaxed_plainly(const RelaxTask<double>& task, bool all = fa
   for (int k = 0; k < task.n; ++k)
     for (int offset = 0; offset < task.offsets; ++offset) {
       const int partner = all ? offset : k + offset;
-      double squares[kDof], most = 0;
+      double squares[kDof], sizes[kDof], most = 0;
       bool allowed = true;
       for (int j = 0; j < kDof; ++j) {
         double d = task.to[j][partner] - task.from[j][k];
@@ -352,11 +352,15 @@ std::vector<double> relaxed_plainly(const RelaxTask<double>& task, bool all = fa
         allowed = allowed && std::abs(d) <= task.bound[j];
         const double x = task.scale[j] * d;
         squares[j] = x * x;
+        sizes[j] = std::abs(x);
         most = std::max(most, std::abs(x));
       }
-      const double* s = squares;
-      const double norm = std::sqrt(((s[0] + s[1]) + s[2]) + s[3] + ((s[4] + s[5]) + s[6]));
-      const double cost = task.metric == RelaxMetric::kL2 ? norm : most;
+      const auto sum = [](const double* s) {
+        return ((s[0] + s[1]) + s[2]) + s[3] + ((s[4] + s[5]) + s[6]);
+      };
+      const double cost = task.metric == RelaxMetric::kL2   ? std::sqrt(sum(squares))
+                          : task.metric == RelaxMetric::kL1 ? sum(sizes)
+                                                            : most;
       if (allowed)
         best[static_cast<std::size_t>(k)] =
             std::min(best[static_cast<std::size_t>(k)],
@@ -398,7 +402,7 @@ struct NeighbourCase {
         [&] { return random.coin(0.2) ? kUnreachable : unit * random.uniform(0, 5); });
     task.value = value.data();
     task.unit = unit;
-    task.metric = random.coin() ? RelaxMetric::kL2 : RelaxMetric::kMax;
+    task.metric = random.one_of({RelaxMetric::kL2, RelaxMetric::kL1, RelaxMetric::kMax});
     task.wraps = random.coin();
     for (std::size_t j = 0; j < kDof; ++j) {
       task.from[j] = from[j].data();
@@ -542,7 +546,7 @@ struct ReachCase {
                              : joint.back() + random.uniform(-spacing, spacing));
     }
     task.unit = random.coin() ? 1 : std::exp2(random.below(41) - 20);
-    task.metric = random.coin() ? RelaxMetric::kL2 : RelaxMetric::kMax;
+    task.metric = random.one_of({RelaxMetric::kL2, RelaxMetric::kL1, RelaxMetric::kMax});
     task.wraps = random.coin();
     const double widest = random.coin(0.3) ? 8 : 1;  // as of steps from knot to knot
     for (std::size_t j = 0; j < kDof; ++j) {

@@ -97,7 +97,7 @@ struct RandomProblem {
     problem.limits.arm_slope =
         open ? 1e6 : random.uniform(1, 3) * problem.resolution.dphi / problem.resolution.ds;
     problem.limits.joint_step = random.uniform(0.4, 1);
-    if (random.coin(0.3)) problem.cost.metric = CostMetric::kMax;
+    if (random.coin(0.4)) problem.cost.metric = random.one_of({CostMetric::kL1, CostMetric::kMax});
     if (random.coin(0.3))
       for (double& weight : problem.cost.weights.emplace())
         weight = random.coin(0.2) ? 0 : random.uniform(0.1, 5);

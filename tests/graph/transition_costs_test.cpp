@@ -115,7 +115,7 @@ TEST(TransitionCosts, TheCheapestWayOnIsThatOfAllPairs) {
     problem.waypoints = {waypoint_of(arm.chain.tool(q0)),
                          waypoint_of(arm.chain.tool(q0 + Config::Constant(0.05)))};
     const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
-    for (const CostMetric metric : {CostMetric::kL2, CostMetric::kMax}) {
+    for (const CostMetric metric : {CostMetric::kL2, CostMetric::kL1, CostMetric::kMax}) {
       problem.cost.metric = metric;
       std::vector<std::vector<ExplicitLattice::Point>> points(
           static_cast<std::size_t>(path.size()));

@@ -364,7 +364,7 @@ const Case kCases[] = {
      "start",
      "{joints: [1, 2, 3, 4, 5, 6, 7]}\nstart_tolerance: 0.11",
      {"start_tolerance", "at most 0.1"}},
-    {"MetricUnknown", "cost", "{metric: l1}", {"cost.metric", "'l1'", "l2, max, time"}},
+    {"MetricUnknown", "cost", "{metric: l3}", {"cost.metric", "'l3'", "l2, l1, max, time"}},
     {"WeightsShort", "cost", "{weights: [1]}", {"cost.weights", "7 numbers"}},
     {"WeightNegative", "cost", "{weights: [1, 1, 1, 1, 1, 1, -1]}", {"cost.weights[6]", ">= 0"}},
     {"WeightInfinite",

@@ -345,7 +345,8 @@ void change_rest(PathProblem& p, swivel::test::Random& random) {
   if (random.coin(0.3)) p.resolution.ds = random.uniform(0.002, 0.02);
   if (random.coin(0.3)) p.resolution.dalpha = random.uniform(0.02, 0.2);
   if (random.coin(0.2)) p.resolution = Resolution();
-  if (random.coin(0.3)) p.cost.metric = CostMetric::kTime;
+  if (random.coin(0.3))
+    p.cost.metric = random.one_of({CostMetric::kL1, CostMetric::kMax, CostMetric::kTime});
   if (random.coin(0.3)) p.cost.weights = {1, 1, random.uniform(1, 2), 1, 1, 1, 1};
   if (random.coin(0.3)) p.refinement.smoothing = random.uniform(0, 0.1);
   if (!p.roll && build_arm(*p.model, p.base_link, p.tip_link, p.hold, p.tool).chain.roll_fixed) {

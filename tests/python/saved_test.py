@@ -62,7 +62,7 @@ def change_task(problem, draw):
     if draw.random() < 0.3:
         problem.tool = pose(draw)
     problem.smooth = draw.choice([problem.smooth, None, swivel.PathSmoothing(angle=0.02)])
-    problem.cost.metric = draw.choice(["l2", "max", "time"])
+    problem.cost.metric = draw.choice(["l2", "l1", "max", "time"])
     problem.refinement.smoothing = draw.uniform(0, 1)
     if problem.closed:
         return

@@ -33,7 +33,8 @@ inline PathProblem motion_problem(const TestRobot& robot, Random& random,
   ball.translation() = problem.waypoints[1].position + random_vector(random, 0.18);
   problem.scene.push_back({"ball", Sphere{0.04}, ball, {}});
   if (random.coin(0.3)) problem.start = q;
-  if (random.coin(0.3)) problem.cost.metric = random.coin() ? CostMetric::kMax : CostMetric::kTime;
+  if (random.coin(0.3))
+    problem.cost.metric = random.one_of({CostMetric::kL1, CostMetric::kMax, CostMetric::kTime});
   problem.smooth = PathSmoothing{};
   return problem;
 }

@@ -125,7 +125,7 @@ inline PathProblem random_problem(const TestRobot& robot, Random& random) {
       robot.name == "windings" ? random.uniform(0.5, 0.9) : random.uniform(0.25, 0.6);
   problem.resolution.dalpha = random.uniform(0.2, 1);
   problem_parts::draw_limits(problem, random);
-  if (random.coin(0.2)) problem.cost.metric = CostMetric::kMax;
+  if (random.coin(0.3)) problem.cost.metric = random.one_of({CostMetric::kL1, CostMetric::kMax});
   if (random.coin(0.3))
     for (double& weight : problem.cost.weights.emplace()) weight = random.uniform(0, 2);
   if (random.coin(0.4)) problem_parts::start_at(problem, chain, q0);

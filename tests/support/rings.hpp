@@ -123,7 +123,7 @@ inline PathProblem ring_problem(const RingArm& arm, Random& random, bool spins =
   if (random.coin(0.6))
     problem_parts::draw_obstacles(problem, chain, q, 1 + random.below(3), random);
   draw_ring_lattice(problem, arm.nodes, length, spins, random);
-  if (random.coin(0.2)) problem.cost.metric = CostMetric::kMax;
+  if (random.coin(0.3)) problem.cost.metric = random.one_of({CostMetric::kL1, CostMetric::kMax});
   if (problem.roll && random.coin()) problem.cost.roll = random.uniform(0.2, 5);
   return problem;
 }

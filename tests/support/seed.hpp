@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <initializer_list>
 #include <random>
 
 namespace swivel::test {
@@ -56,6 +57,10 @@ class Random {
   }
   int below(int n) { return static_cast<int>(engine_() % static_cast<std::uint64_t>(n)); }
   bool coin(double p = 0.5) { return uniform(0, 1) < p; }
+  template <class T>
+  T one_of(std::initializer_list<T> choices) {
+    return choices.begin()[below(static_cast<int>(choices.size()))];
+  }
 
  private:
   std::mt19937_64 engine_;

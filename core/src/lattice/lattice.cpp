@@ -334,6 +334,10 @@ double Lattice::edge_cost(const Config& delta) const {
     return rounded(std::sqrt(((x[0] * x[0] + x[1] * x[1]) + x[2] * x[2]) + x[3] * x[3] +
                              ((x[4] * x[4] + x[5] * x[5]) + x[6] * x[6])),
                    cost_unit_);
+  if (cost_.metric == CostMetric::kL1) {
+    for (double& value : x) value = std::abs(value);
+    return rounded(((x[0] + x[1]) + x[2]) + x[3] + ((x[4] + x[5]) + x[6]), cost_unit_);
+  }
   double most = 0;
   for (const double value : x) most = std::max(most, std::abs(value));
   return rounded(most, cost_unit_);

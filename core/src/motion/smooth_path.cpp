@@ -28,17 +28,18 @@ struct Bend {
   double h = 0;
 };
 
-/// The norm of a weighted move: its gradient is `way`, its Hessian (power - 1) (diag(spread) - way
-/// way^T) / length.
+/// The norm of a weighted move: its gradient is `way`, its Hessian bent (diag(spread) - coupled way
+/// way^T).
 struct Norm {
-  double length = 0;
+  double bent = 0, coupled = 1;
   Config way, spread;
 };
 
 class Objective {
  public:
-  Objective(const LayerSolver& solver, const SmoothObjective& objective)
-      : solver_(&solver), objective_(&objective), n_(solver.layers()) {
+  /// `tip` rounds off the tips of norms, rad.
+  Objective(const LayerSolver& solver, const SmoothObjective& objective, double tip = kLeastMove)
+      : solver_(&solver), objective_(&objective), n_(solver.layers()), tip_(tip) {
     scale_ = Config::of(objective.weights.data());
     bends_.resize(static_cast<std::size_t>(n_));
     for (int i = 1; i + 1 < n_; ++i) {
@@ -57,6 +58,13 @@ class Objective {
       q[at(i)] = *joints;
     }
     return true;
+  }
+
+  /// Returns what the joints' moves cost.
+  [[nodiscard]] double moves(const std::vector<Config>& q) const {
+    double sum = 0;
+    for (int i = 0; i + 1 < n_; ++i) sum += length(scale_.cwiseProduct(q[at(i + 1)] - q[at(i)]));
+    return sum;
   }
 
   [[nodiscard]] double value(const std::vector<double>& x, const std::vector<Config>& q) const {
@@ -93,15 +101,14 @@ class Objective {
       const std::size_t a = at(i), b = at(i + 1);
       const Norm n = norm(scale_.cwiseProduct(l.q[b] - l.q[a]));
       const Config ja = scale_.cwiseProduct(l.first[a]), jb = scale_.cwiseProduct(l.first[b]);
-      const double wa = joint_dot(n.way, ja), wb = joint_dot(n.way, jb),
-                   bent = (objective_->power - 1) / n.length;
+      const double wa = joint_dot(n.way, ja), wb = joint_dot(n.way, jb), bent = n.bent;
       g[a] -= wa;
       g[b] += wb;
-      H[0][a] += bent * (joint_dot(ja.cwiseProduct(n.spread), ja) - wa * wa) -
+      H[0][a] += bent * (joint_dot(ja.cwiseProduct(n.spread), ja) - n.coupled * wa * wa) -
                  joint_dot(n.way, scale_.cwiseProduct(l.second[a]));
-      H[0][b] += bent * (joint_dot(jb.cwiseProduct(n.spread), jb) - wb * wb) +
+      H[0][b] += bent * (joint_dot(jb.cwiseProduct(n.spread), jb) - n.coupled * wb * wb) +
                  joint_dot(n.way, scale_.cwiseProduct(l.second[b]));
-      H[1][a] -= bent * (joint_dot(ja.cwiseProduct(n.spread), jb) - wa * wb);
+      H[1][a] -= bent * (joint_dot(ja.cwiseProduct(n.spread), jb) - n.coupled * wa * wb);
       const double change = x[b] - x[a], over = std::abs(change) - objective_->most_change;
       if (over <= 0) continue;
       const double pull = 2 * kChange * std::copysign(over, change);
@@ -142,19 +149,33 @@ class Objective {
   }
   [[nodiscard]] double length(const Config& r) const {
     const int power = objective_->power;
-    if (power == 2) return std::sqrt(joint_squared_norm(r) + kLeastMove * kLeastMove);
-    const double unit = std::max(r.lpNorm<Eigen::Infinity>(), kLeastMove);
+    if (power == 2) return std::sqrt(joint_squared_norm(r) + tip_ * tip_);
+    if (power == 1) return joint_sum(magnitudes(r));
+    const double unit = std::max(r.lpNorm<Eigen::Infinity>(), tip_);
     return unit * std::pow(joint_sum(raised(r / unit, power)) +
-                               raised(Config::Constant(kLeastMove / unit), power)[0],
+                               raised(Config::Constant(tip_ / unit), power)[0],
                            1.0 / power);
   }
   static double off(double roll) { return std::sqrt(roll * roll + kLeastRoll * kLeastRoll); }
   [[nodiscard]] Norm norm(const Config& r) const {
     Norm n;
-    n.length = length(r);
-    n.spread = raised(r / n.length, objective_->power - 2);
-    n.way = n.spread.cwiseProduct(r / n.length);
+    if (objective_->power == 1) {
+      const Config size = magnitudes(r);
+      n.bent = 1;
+      n.coupled = 0;
+      n.way = r.cwiseQuotient(size);
+      n.spread = size.cwiseInverse() - n.way.cwiseAbs2().cwiseQuotient(size);
+      return n;
+    }
+    const double length = this->length(r);
+    n.bent = (objective_->power - 1) / length;
+    n.spread = raised(r / length, objective_->power - 2);
+    n.way = n.spread.cwiseProduct(r / length);
     return n;
+  }
+  /// Returns the magnitudes of r's entries, their tips rounded off.
+  [[nodiscard]] Config magnitudes(const Config& r) const {
+    return (r.cwiseAbs2() + Config::Constant(tip_ * tip_)).cwiseSqrt();
   }
   /// Returns each entry of r to an even power >= 0, by products alone.
   static Config raised(const Config& r, int power) {
@@ -173,6 +194,7 @@ class Objective {
   const LayerSolver* solver_;
   const SmoothObjective* objective_;
   int n_;
+  double tip_;
   Config scale_;
   std::vector<Bend> bends_;
 };
@@ -248,22 +270,11 @@ bool newton_step_inside(const std::array<std::vector<double>, 3>& H, const std::
   return true;
 }
 
-}  // namespace
-
-double smooth_cost(const LayerSolver& solver, const SmoothObjective& objective,
-                   const std::vector<double>& x) {
-  const Objective f(solver, objective);
-  std::vector<Config> q;
-  return f.solve(x, q) ? f.value(x, q) : std::numeric_limits<double>::infinity();
-}
-
-std::vector<double> smooth_minimum(const LayerSolver& solver, const SmoothObjective& objective,
-                                   const std::vector<CoordinateBox>& boxes, std::vector<double> x,
-                                   const Budget& budget) {
+/// Seeks a minimum of f from x on, by smooth_minimum()'s method.
+std::vector<double> minimum_from(const Objective& f, const std::vector<CoordinateBox>& boxes,
+                                 std::vector<double> x, const Budget& budget) {
   constexpr int kIterations = 60;
   constexpr double kGain = 1e-9, kFirstShift = 1e-3, kLastShift = 1e9;
-  const Objective f(solver, objective);
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] = std::clamp(x[i], boxes[i].low, boxes[i].high);
   Layers here;
   if (!f.solve(x, here.q)) return x;
   double value = f.value(x, here.q), shift = 0;
@@ -306,6 +317,39 @@ std::vector<double> smooth_minimum(const LayerSolver& solver, const SmoothObject
     shift = shift <= kFirstShift ? 0 : shift / 8;
   }
   return x;
+}
+
+/// Seeks a minimum of the sum of magnitudes, which has no derivative where a joint stands still, by
+/// objectives that round it off less and less.
+std::vector<double> least_sum_from(const LayerSolver& solver, const SmoothObjective& objective,
+                                   const std::vector<CoordinateBox>& boxes, std::vector<double> x,
+                                   const Budget& budget) {
+  const Objective exact(solver, objective);
+  std::vector<Config> q;
+  if (!exact.solve(x, q)) return x;
+  const double before = exact.value(x, q), mean = exact.moves(q) / (kDof * (solver.layers() - 1.0));
+  std::vector<double> found = x;
+  for (const double part : {3e-2, 3e-3, 3e-4})
+    found = minimum_from(Objective(solver, objective, std::max(kLeastMove, part * mean)), boxes,
+                         std::move(found), budget);
+  return exact.solve(found, q) && exact.value(found, q) < before ? found : x;
+}
+
+}  // namespace
+
+double smooth_cost(const LayerSolver& solver, const SmoothObjective& objective,
+                   const std::vector<double>& x) {
+  const Objective f(solver, objective);
+  std::vector<Config> q;
+  return f.solve(x, q) ? f.value(x, q) : std::numeric_limits<double>::infinity();
+}
+
+std::vector<double> smooth_minimum(const LayerSolver& solver, const SmoothObjective& objective,
+                                   const std::vector<CoordinateBox>& boxes, std::vector<double> x,
+                                   const Budget& budget) {
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = std::clamp(x[i], boxes[i].low, boxes[i].high);
+  if (objective.power == 1) return least_sum_from(solver, objective, boxes, std::move(x), budget);
+  return minimum_from(Objective(solver, objective), boxes, std::move(x), budget);
 }
 
 }  // namespace swivel

@@ -322,6 +322,7 @@ class ProblemValues {
     const Cost& cost = problem_.cost;
     YAML::Node section;
     section["metric"] = cost.metric == CostMetric::kL2    ? "l2"
+                        : cost.metric == CostMetric::kL1  ? "l1"
                         : cost.metric == CostMetric::kMax ? "max"
                                                           : "time";
     if (cost.weights) section["weights"] = numbers_node(std::span(*cost.weights).first(joints_));

@@ -726,7 +726,8 @@ void ProblemReader::read_cost() {
   if (!value) return;
   const YamlSection section = value->section();
   if (const auto metric = section.find("metric"))
-    problem_.cost.metric = word(*metric, {CostMetric::kL2, CostMetric::kMax, CostMetric::kTime});
+    problem_.cost.metric =
+        word(*metric, {CostMetric::kL2, CostMetric::kL1, CostMetric::kMax, CostMetric::kTime});
   if (const auto weights = section.find_filled("weights")) read_weights(*weights);
   if (const auto roll = section.find("roll")) {
     problem_.cost.roll = roll->number();

@@ -296,9 +296,9 @@ Schema limits() {
 Schema cost() {
   return section(
       "cost", {
-                  {"metric", one_of({"l2", "max", "time"}), "", otherwise("l2"),
-                   "what a step costs: `l2` sqrt(Σ (w Δq)²), `max` max w |Δq|, `time` max |Δq| / v "
-                   "with the velocities of the URDF"},
+                  {"metric", one_of({"l2", "l1", "max", "time"}), "", otherwise("l2"),
+                   "what a step costs: `l2` sqrt(Σ (w Δq)²), `l1` Σ w |Δq|, `max` max w |Δq|, "
+                   "`time` max |Δq| / v with the velocities of the URDF"},
                   {"weights",
                    either(either(numbers(kDof, kNonNegative), map(number(kNonNegative))),
                           numbers(kDof - 1, kNonNegative)),

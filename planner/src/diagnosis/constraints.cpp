@@ -419,11 +419,10 @@ Config Constraints::longest_move(int layer, int a, const Config& qa, int b,
   std::vector<Config> rows{qa};
   rows.insert(rows.end(), interpolated.rows.begin(), interpolated.rows.end());
   if (interpolated.fault == Lattice::InterpolatedEdge::Fault::kNone) rows.push_back(qb);
-  if (interpolated.fault == Lattice::InterpolatedEdge::Fault::kStep)
-    rows.push_back(interpolated.q);
+  if (interpolated.fault == Lattice::InterpolatedEdge::Fault::kStep) rows.push_back(interpolated.q);
   const Eigen::Index joints = lattice_.chain().roll ? kDof - 1 : kDof;  // as measure_step()
-  Config longest = lattice_.delta(qa, qb) /
-                   (lattice_.layer_of_rows(layer + 1) - lattice_.layer_of_rows(layer));
+  Config longest =
+      lattice_.delta(qa, qb) / (lattice_.layer_of_rows(layer + 1) - lattice_.layer_of_rows(layer));
   double most = 1;
   for (std::size_t k = 1; k < rows.size(); ++k) {
     const Config move = lattice_.delta(rows[k - 1], rows[k]);

@@ -223,7 +223,7 @@ class JobCheck {
     const std::array<double, kDof> weights = joint_weights(cost, chain_);
     double sum = 0;
     for (std::size_t i = 1; i < rows.size(); ++i) {
-      double squares = 0, most = 0;
+      double squares = 0, sum_of_moves = 0, most = 0;
       for (std::size_t j = 0; j < kDof; ++j) {
         if (chain_.roll && j + 1 == kDof) continue;
         const auto x = static_cast<Eigen::Index>(j);
@@ -231,9 +231,12 @@ class JobCheck {
             cost.metric == CostMetric::kTime ? 1 / chain_.limit[j].velocity : weights[j];
         const double scaled = scale * (rows[i].q[x] - rows[i - 1].q[x]);
         squares += scaled * scaled;
+        sum_of_moves += std::abs(scaled);
         most = std::max(most, std::abs(scaled));
       }
-      sum += cost.metric == CostMetric::kL2 ? std::sqrt(squares) : most;
+      sum += cost.metric == CostMetric::kL2   ? std::sqrt(squares)
+             : cost.metric == CostMetric::kL1 ? sum_of_moves
+                                              : most;
     }
     return sum;
   }

@@ -290,11 +290,11 @@ struct Planner::Impl {
          {unused_key_warnings(unused_keys(robot->arm().chain, robot->arm_class()), problem),
           layout->first.lattice->has_layers_between()
               ? std::vector<std::string>()
-              : unused_key_warnings(unused_knot(hooks.cost ? "paths whose states cost something"
-                                        : problem.resolution.arcs
-                                            ? "paths with resolution.arcs"
-                                            : "paths with limits.step_error"),
-                                    problem),
+              : unused_key_warnings(
+                    unused_knot(hooks.cost                ? "paths whose states cost something"
+                                : problem.resolution.arcs ? "paths with resolution.arcs"
+                                                          : "paths with limits.step_error"),
+                    problem),
           path_warnings(*robot, problem, layout->task->path(), *world)})
       result.warnings.insert(result.warnings.end(), lines.begin(), lines.end());
     SpecialPairs pairs;
@@ -316,8 +316,7 @@ struct Planner::Impl {
       if (!first->outcome.path.empty())
         return or_cheaper_arcs(*std::move(first), rule, options, budget, result);
     }
-    if (!layout->has_second)
-      layout->has_second = layout->task->has_second(*robot, problem, budget);
+    if (!layout->has_second) layout->has_second = layout->task->has_second(*robot, problem, budget);
     return *layout->has_second ? search_second(rule, options, budget, result) : *std::move(first);
   }
   /// Searches TaskLattice::second() after layout->first.

@@ -11,12 +11,14 @@ namespace {
 
 constexpr float kNoWay = std::numeric_limits<float>::infinity();
 
-/// Adds to sum[j] the square of b[j] - a[j], the short way round a circle of `period` unless that
-/// is 0; with `largest` raises sum[j] to it instead.
-template <bool largest>
+/// Adds the move b[j] - a[j] of a joint to sum[j], the short way round a circle of `period` unless
+/// that is 0: its square with the metric l2, its magnitude with l1; with max raises sum[j] to it.
+template <CostMetric metric>
 void add_moves(const float* a, const float* b, float period, int n, float* sum) {
   const auto add = [sum](int j, float move) {
-    sum[j] = largest ? std::max(sum[j], move * move) : sum[j] + move * move;
+    sum[j] = metric == CostMetric::kL2   ? sum[j] + move * move
+             : metric == CostMetric::kL1 ? sum[j] + std::abs(move)
+                                         : std::max(sum[j], std::abs(move));
   };
   if (period == 0) {
     for (int j = 0; j < n; ++j) add(j, b[j] - a[j]);
@@ -32,18 +34,30 @@ void add_moves(const float* a, const float* b, float period, int n, float* sum) 
 }
 
 /// Sets cost[j] to that of the edge from index j + o of a column to index j + window of the next.
-void edge_costs(const BasinColumn& from, int o, const BasinColumn& to, int window, int angles,
-                const BasinMetric& metric, float* cost) {
+template <CostMetric metric>
+void edge_costs_by(const BasinColumn& from, int o, const BasinColumn& to, int window, int angles,
+                   const std::array<float, kDof>& period, float* cost) {
   std::fill_n(cost, angles, 0.0F);
   for (std::size_t k = 0; k < kDof; ++k) {
     const float *a = from.q[k].data() + o, *b = to.q[k].data() + window;
-    if (metric.largest)
-      add_moves<true>(a, b, metric.period[k], angles, cost);
-    else
-      add_moves<false>(a, b, metric.period[k], angles, cost);
+    add_moves<metric>(a, b, period[k], angles, cost);
   }
   const float *before = from.mask.data() + o, *after = to.mask.data() + window;
-  for (int j = 0; j < angles; ++j) cost[j] = std::sqrt(cost[j]) + before[j] + after[j];
+  for (int j = 0; j < angles; ++j)
+    cost[j] = (metric == CostMetric::kL2 ? std::sqrt(cost[j]) : cost[j]) + before[j] + after[j];
+}
+
+void edge_costs(const BasinColumn& from, int o, const BasinColumn& to, int window, int angles,
+                const BasinMetric& by, float* cost) {
+  switch (by.metric) {
+    case CostMetric::kL2:
+      return edge_costs_by<CostMetric::kL2>(from, o, to, window, angles, by.period, cost);
+    case CostMetric::kL1:
+      return edge_costs_by<CostMetric::kL1>(from, o, to, window, angles, by.period, cost);
+    case CostMetric::kMax:
+    case CostMetric::kTime:
+      return edge_costs_by<CostMetric::kMax>(from, o, to, window, angles, by.period, cost);
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/base/types.hpp"
+#include "swivel/core/problem/path_problem.hpp"
 
 namespace swivel {
 
@@ -19,7 +20,8 @@ struct BasinColumn {
 /// What a change of the joints costs.
 struct BasinMetric {
   std::array<float, kDof> period{};  ///< a turn of each continuous joint, weighted; else 0
-  bool largest = false;              ///< the largest weighted move counts, not their norm
+  /// l2, l1 or max, of the weighted moves
+  CostMetric metric = CostMetric::kL2;
 };
 
 /// The least costs of paths of one IK solution over a few layers, in which the arm angle changes by

@@ -56,7 +56,7 @@ class BasinSearch {
     for (std::size_t k = 0; k < kDof; ++k)
       metric_.period[k] =
           lattice.continuous()[k] ? static_cast<float>(kTwoPi * objective.weights[k]) : 0;
-    metric_.largest = objective.power != 2;
+    metric_.metric = lattice.cost().metric;
     objective_.most_change *= stride_;
     objective_.jumps.clear();  // no way changes its IK solution
     objective_.roll.clear();

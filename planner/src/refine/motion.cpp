@@ -396,8 +396,8 @@ MotionPlan plan_motion(Planner& planner, const PlanOptions& options, bool refine
     return plan;
   const ArmClass& arm = planner.view().robot.arm_class();
   if (!arm.srs) return plan;  // signs of other arms change along a motion
-  MotionPlan other = attempt(planner, options, refined, timing, budget,
-                             std::make_shared<KeepsBranch>(*arm.srs));
+  MotionPlan other =
+      attempt(planner, options, refined, timing, budget, std::make_shared<KeepsBranch>(*arm.srs));
   if (!other.motion || !other.motion->motion) {
     static_cast<void>(planner.plan(options));  // for its view
     return plan;

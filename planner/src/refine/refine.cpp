@@ -208,6 +208,13 @@ class RefinementChecker {
   Budget budget_;
 };
 
+/// Returns the p of the norm by which a metric's moves are smoothed.
+int power_of(CostMetric metric) {
+  // A power of 32 would take twice as long for 0.2 % less.
+  constexpr int kNearLargest = 16;
+  return metric == CostMetric::kL2 ? 2 : metric == CostMetric::kL1 ? 1 : kNearLargest;
+}
+
 double cost_of(const Lattice& lattice, const std::vector<TrajectoryRow>& rows) {
   double sum = 0;
   for (std::size_t i = 1; i < rows.size(); ++i) sum += lattice.edge_cost(rows[i].q - rows[i - 1].q);
@@ -576,9 +583,7 @@ class Improver {
     const Lattice& lattice = redundancy.lattice();
     objective_.weights = lattice.cost_scale();
     objective_.most_change = 0.98 * redundancy.most_change();
-    // The other metrics are largest moves. A power of 32 would take twice as long for 0.2 % less.
-    constexpr int kNearLargest = 16;
-    if (lattice.cost().metric != CostMetric::kL2) objective_.power = kNearLargest;
+    objective_.power = power_of(lattice.cost().metric);
     objective_.roll_is_coordinate = redundancy.is_roll();
     // otherwise the rolls stay as they are
     if (lattice.roll_costs() && (lattice.chain().roll || redundancy.is_roll()))

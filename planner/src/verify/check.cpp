@@ -792,16 +792,19 @@ class Check {
 
   [[nodiscard]] double cost_of(const Config& move) const {
     const std::array<double, kDof> weights = joint_weights(problem_.cost, chain_);
-    double l2 = 0, most = 0;
+    double squares = 0, sum = 0, most = 0;
     for (std::size_t j = 0; j < kDof; ++j) {
       const double dq = move[static_cast<Eigen::Index>(j)];
       const double scaled = problem_.cost.metric != CostMetric::kTime ? weights[j] * dq
                             : chain_.roll && j + 1 == kDof            ? 0
                                                            : dq / chain_.limit[j].velocity;
-      l2 += scaled * scaled;
+      squares += scaled * scaled;
+      sum += std::abs(scaled);
       most = std::max(most, std::abs(scaled));
     }
-    return problem_.cost.metric == CostMetric::kL2 ? std::sqrt(l2) : most;
+    return problem_.cost.metric == CostMetric::kL2   ? std::sqrt(squares)
+           : problem_.cost.metric == CostMetric::kL1 ? sum
+                                                     : most;
   }
 
   /// Returns the cost of the rolls: each row's, weighted with half of the path to the rows before

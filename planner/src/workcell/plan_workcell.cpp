@@ -10,11 +10,11 @@
 
 #include "measure/measure_rows.hpp"
 #include "plan/answer.hpp"
+#include "plan/layout/told_turns.hpp"
 #include "plan/require_no_hooks.hpp"
 #include "plan/search.hpp"
 #include "plan/search_settings.hpp"
 #include "plan/stopwatch.hpp"
-#include "plan/layout/told_turns.hpp"
 #include "swivel/collision/arms/inter_arm_world.hpp"
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/base/timeline.hpp"

@@ -591,9 +591,11 @@ void bind_scene(py::module_& m) {
 void bind_task(py::module_& m) {
   bind_enum<EdgeMode>(m, "EdgeMode", "What is proved of motions between layers.",
                       {{"continuous", EdgeMode::kContinuous}, {"nodes", EdgeMode::kNodes}});
-  bind_enum<CostMetric>(
-      m, "CostMetric", "What a step costs: docs/formats.md, `cost`.",
-      {{"l2", CostMetric::kL2}, {"max", CostMetric::kMax}, {"time", CostMetric::kTime}});
+  bind_enum<CostMetric>(m, "CostMetric", "What a step costs: docs/formats.md, `cost`.",
+                        {{"l2", CostMetric::kL2},
+                         {"l1", CostMetric::kL1},
+                         {"max", CostMetric::kMax},
+                         {"time", CostMetric::kTime}});
   PlainStruct<Resolution>(m, "Resolution", "Steps of the lattice, as keywords.")
       .member("ds", &Resolution::ds, "Along the path, m.")
       .member("dphi", &Resolution::dphi, "Of the arm angle, rad.")
@@ -834,8 +836,8 @@ Postures to_joints(py::handle source, const char* what, std::size_t width) {
   if (array.ndim() == 1) array = array.reshape({1, static_cast<int>(array.shape(0))});
   const auto columns = array.ndim() == 2 ? static_cast<std::size_t>(array.shape(1)) : 0;
   if (columns == 0 || (width != 0 ? columns != width : columns != kDof && columns != kDof - 1))
-    throw py::value_error(std::string(what) + " of shape " + shape + ": allowed are " +
-                          allowed + (width == 0 ? ", or 6 of six joints without a roll" : ""));
+    throw py::value_error(std::string(what) + " of shape " + shape + ": allowed are " + allowed +
+                          (width == 0 ? ", or 6 of six joints without a roll" : ""));
   Postures postures{std::vector<Config>(static_cast<std::size_t>(array.shape(0))), columns};
   for (std::size_t k = 0; k < postures.rows.size(); ++k)
     std::copy_n(array.data(static_cast<py::ssize_t>(k), 0), columns, postures.rows[k].data());

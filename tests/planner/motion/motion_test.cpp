@@ -94,7 +94,7 @@ TEST(Refine, IsValidNeverDearerAndKeepsLabels) {
   EXPECT_GE(cheaper, solved / 2);
   EXPECT_GE(starts, at_least(1));
   EXPECT_GE(turns, at_least(1));
-  EXPECT_EQ(metrics.size(), 3u);
+  EXPECT_GE(metrics.size(), 3u);
 }
 
 /// The kinds of paths that people have: valid by the check, and never dearer.

@@ -134,8 +134,7 @@ TEST(CartesianPath, MotionsOfWholePathsAndPartsPassTheCheck) {
     ASSERT_TRUE(rows.passed) << k << ": " << rows.failures.front();
     ASSERT_EQ(path.fraction == 1, path.cause.empty() || !path.motion) << k;
     if (!path.motion) {  // joints would have to jump
-      ASSERT_NE(path.cause.find("jump"), std::string::npos)
-          << k << ": " << path.cause;
+      ASSERT_NE(path.cause.find("jump"), std::string::npos) << k << ": " << path.cause;
       continue;
     }
     ++(path.fraction == 1 ? whole : part);

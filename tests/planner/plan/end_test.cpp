@@ -148,7 +148,7 @@ PathProblem ending_problem(const EndArm& arm, Random& random) {
   if (random.coin(0.7))
     problem_parts::draw_obstacles(problem, chain, q, 1 + random.below(3), random);
   draw_lattice(problem, arm.nodes, length, random);
-  if (random.coin(0.2)) problem.cost.metric = CostMetric::kMax;
+  if (random.coin(0.3)) problem.cost.metric = random.one_of({CostMetric::kL1, CostMetric::kMax});
   if (random.coin(0.4)) problem.start = first;
   for (int j = 0; j < kDof; ++j)  // another turn, where a joint has one
     if (const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)]; random.coin(0.2)) {

@@ -319,7 +319,10 @@ TEST(KnotGrid, JointSevenRests) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const PathProblem problem =
         free_roll_problem(arms[static_cast<std::size_t>(trial) % arms.size()],
-                          trial % 3 == 0 ? CostMetric::kMax : CostMetric::kL2, random);
+                          trial % 3 == 0   ? CostMetric::kMax
+                          : trial % 6 == 1 ? CostMetric::kL1
+                                           : CostMetric::kL2,
+                          random);
     const std::string what =
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
     const PreparedRobot robot(problem);

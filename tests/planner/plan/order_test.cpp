@@ -54,7 +54,8 @@ TEST(Order, JointsOfTwoTurnsBeginInTheTurnNearestToTheMiddle) {
     problem.resolution = {.ds = 0.01, .dphi = 0.15, .arc = 0.3};
     const std::string what =
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " " + name;
-    problem.cost.metric = random.coin(0.3) ? CostMetric::kMax : CostMetric::kL2;
+    problem.cost.metric =
+        random.one_of({CostMetric::kL2, CostMetric::kL2, CostMetric::kL1, CostMetric::kMax});
     if (random.coin(0.3)) {
       problem.cost.weights = {1, 1, 1, 1, 1, 1, 1};
       (*problem.cost.weights)[static_cast<std::size_t>(random.below(kDof))] = 0;

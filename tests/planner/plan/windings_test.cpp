@@ -120,7 +120,7 @@ PathProblem wide_problem(const TestRobot& robot, const Wide& wide, bool rolls, R
   problem.limits.tool_path_error = 0.02;
   if (random.coin(0.3)) problem.limits.joint_margin = 0.05;
   if (random.coin(0.2)) problem_parts::draw_obstacles(problem, chain, q, 2, random);
-  if (random.coin(0.2)) problem.cost.metric = CostMetric::kMax;
+  if (random.coin(0.3)) problem.cost.metric = random.one_of({CostMetric::kL1, CostMetric::kMax});
   if (rolls) {
     problem.roll = random.coin() ? Roll{} : Roll{-0.6, 0.6};
     problem.resolution.droll = 0.4;

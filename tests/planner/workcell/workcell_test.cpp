@@ -200,8 +200,7 @@ TEST(Workcell, IsTheAnswerOfEachArmWhereTheseDoNotMeet) {
     ++alone;
     for (std::size_t k = 0; k < 2; ++k) {
       const PlanResult own =
-          Planner(on_all_layers(prepared.problem(k), prepared.robot(k).arm_class()))
-              .plan(lazily());
+          Planner(on_all_layers(prepared.problem(k), prepared.robot(k).arm_class())).plan(lazily());
       expect_equal_rows(own.trajectory, found.arms[k].rows());
     }
   }

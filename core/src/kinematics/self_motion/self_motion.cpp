@@ -224,18 +224,36 @@ double least_largest(const Config& move, const Config& along, const Config& weig
   return way * x;
 }
 
+/// Returns the x, |x| <= most, at which the sum of the weighted joints' moves in  move + x along is
+/// least; of several the one nearest 0. The sum is convex and bends where a joint stands still.
+double least_sum(const Config& move, const Config& along, const Config& weight, double most) {
+  const auto sum = [&](double x) {
+    double moves = 0;
+    for (int j = 0; j < kDof; ++j) moves += weight[j] * std::abs(move[j] + x * along[j]);
+    return moves;
+  };
+  double best = 0, least = sum(0);
+  for (int j = 0; j < kDof; ++j) {
+    if (along[j] == 0) continue;
+    const double x = std::clamp(-move[j] / along[j], -most, most), moves = sum(x);
+    if (moves < least || (moves == least && std::abs(x) < std::abs(best))) best = x, least = moves;
+  }
+  return best;
+}
+
 }  // namespace
 
 std::vector<std::optional<Config>> SelfMotion::images(std::span<const Config> q, const Pose& tool,
                                                       Least least) const {
   PoseNewton::Points found;
   data_->newton.nearest(q, tool, data_->scale2, kImageSteps, found);
-  if (least == Least::kLargest) {
+  if (least != Least::kNorm) {
+    const auto drift = least == Least::kSum ? least_sum : least_largest;
     std::vector<Config> guesses = found.q;
     for (std::size_t k = 0; k < q.size(); ++k)
       if (found.found[k] != 0)
-        guesses[k] += least_largest(found.q[k] - q[k], found.tangent[k], data_->scale, kMostDrift) *
-                      found.tangent[k];
+        guesses[k] +=
+            drift(found.q[k] - q[k], found.tangent[k], data_->scale, kMostDrift) * found.tangent[k];
     PoseNewton::Points drifted;
     data_->newton.nearest(guesses, tool, data_->scale2, kImageSteps, drifted);
     for (std::size_t k = 0; k < q.size(); ++k)

@@ -42,8 +42,9 @@ class ArcLayerMaker {
         problem_(problem),
         motion_(motion),
         // nodes drift with the tool as the cost would have it
-        least_(problem.cost.metric == CostMetric::kL2 ? SelfMotion::Least::kNorm
-                                                      : SelfMotion::Least::kLargest),
+        least_(problem.cost.metric == CostMetric::kL2   ? SelfMotion::Least::kNorm
+               : problem.cost.metric == CostMetric::kL1 ? SelfMotion::Least::kSum
+                                                        : SelfMotion::Least::kLargest),
         twins_(motion.has_flipped_arcs() && !chain.roll_fixed) {
     if (chain.roll_fixed) solutions_.emplace(chain, method);
   }

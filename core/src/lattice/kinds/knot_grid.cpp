@@ -72,9 +72,7 @@ std::unique_ptr<KnotGrid> KnotGrid::make(const Chain& chain, const SrsArm& arm,
   if (problem.limits.step_error)
     throw InputError(problem.source,
                      "limits.step_error: allowed without path.roll, or for arms of six joints");
-  Layout layout{
-      Knots(path, knots_along(path, problem.resolution.knot_of_grids())),
-      last_joint};
+  Layout layout{Knots(path, knots_along(path, problem.resolution.knot_of_grids())), last_joint};
   layout.wound.fill(!circles);
   return std::unique_ptr<KnotGrid>(new KnotGrid(chain, arm, problem, budget, std::move(layout)));
 }

@@ -37,8 +37,9 @@ std::vector<UnusedKey> unused_keys(const Chain& chain, const ArmClass& arm) {
                     "the arm has six joints and a tool that may not turn: nothing to spare"});
   const char* const no_roll = "no roll of an arm of seven joints is free";
   if (chain.free_roll)
-    keys.push_back({"resolution", "arcs", "nodes of an arm of seven joints with a free roll stand "
-                                          "at angles of the grid alone"});
+    keys.push_back({"resolution", "arcs",
+                    "nodes of an arm of seven joints with a free roll stand "
+                    "at angles of the grid alone"});
   else
     keys.push_back({"resolution", "droll", no_roll});
   if (!chain.tool_may_turn()) keys.push_back({"limits", "roll_slope", "no roll is free"});

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "cost_to_go/kernels/relax.hpp"
+#include "cost_to_go/kernels/relax_task.hpp"
 #include "swivel/core/base/timeline.hpp"
 
 namespace swivel {
@@ -89,7 +89,7 @@ class Chords {
         window_(std::min(n_ / 2, stride * lattice.window() + 1)),
         nodes_(SrsLattice::kElbowSides) {
     const Cost& cost = lattice.cost();
-    task_.metric = cost.metric == CostMetric::kL2 ? RelaxMetric::kL2 : RelaxMetric::kMax;
+    task_.metric = relax_metric(cost.metric);
     task_.wraps = false;
     double scales = 0, largest = kPi;
     for (std::size_t j = 0; j < kDof; ++j) {

@@ -3,8 +3,8 @@
 
 namespace swivel {
 
-/// The norm of a joint move that edges cost: Euclidean, or the largest joint.
-enum class RelaxMetric { kL2, kMax };
+/// The norm of a joint move that edges cost: Euclidean, the sum of the joints, or the largest one.
+enum class RelaxMetric { kL2, kL1, kMax };
 
 /// The input and output of relaxing a run of n nodes of one IK solution against runs of one in a
 /// layer nearby: node k with the partners k, k + 1, ..., k + offsets - 1. In double precision it

@@ -159,8 +159,11 @@ inline V with_partner(const RelaxTask<T>& task, const V* from, const V* to, V va
     limit = room * room;
   } else {
     for (V& part : x) part = magnitude(part);
-    measure =
-        larger(larger(larger(x[0], x[1]), larger(x[2], x[3])), larger(larger(x[4], x[5]), x[6]));
+    if constexpr (kMetric == RelaxMetric::kL1)
+      measure = ((x[0] + x[1]) + x[2]) + x[3] + ((x[4] + x[5]) + x[6]);
+    else
+      measure =
+          larger(larger(larger(x[0], x[1]), larger(x[2], x[3])), larger(larger(x[4], x[5]), x[6]));
     limit = room;
   }
   if (!any_less(measure, limit)) return best;
@@ -278,6 +281,8 @@ struct Reach {
       const V cost = task.scale[j] * larger(apart, V{});
       if constexpr (kMetric == RelaxMetric::kL2)
         sum = sum + cost * cost;
+      else if constexpr (kMetric == RelaxMetric::kL1)
+        sum = sum + cost;
       else
         sum = larger(sum, cost);
     }
@@ -450,22 +455,33 @@ void relax_all_run(const RelaxTask<double>& task) {
   }
 }
 
+template <RelaxMetric kMetric>
+void relax_all_by(const RelaxTask<double>& task) {
+  task.wraps ? relax_all_run<kMetric, true>(task) : relax_all_run<kMetric, false>(task);
+}
+
 void relax_all(const RelaxTask<double>& task) {
   if (task.metric == RelaxMetric::kL2)
-    task.wraps ? relax_all_run<RelaxMetric::kL2, true>(task)
-               : relax_all_run<RelaxMetric::kL2, false>(task);
+    relax_all_by<RelaxMetric::kL2>(task);
+  else if (task.metric == RelaxMetric::kL1)
+    relax_all_by<RelaxMetric::kL1>(task);
   else
-    task.wraps ? relax_all_run<RelaxMetric::kMax, true>(task)
-               : relax_all_run<RelaxMetric::kMax, false>(task);
+    relax_all_by<RelaxMetric::kMax>(task);
+}
+
+template <RelaxMetric kMetric, class T>
+void relax_by(const RelaxTask<T>& task) {
+  task.wraps ? relax_run<kMetric, true>(task) : relax_run<kMetric, false>(task);
 }
 
 template <class T>
 void relax(const RelaxTask<T>& task) {
   if (task.metric == RelaxMetric::kL2)
-    task.wraps ? relax_run<RelaxMetric::kL2, true>(task) : relax_run<RelaxMetric::kL2, false>(task);
+    relax_by<RelaxMetric::kL2>(task);
+  else if (task.metric == RelaxMetric::kL1)
+    relax_by<RelaxMetric::kL1>(task);
   else
-    task.wraps ? relax_run<RelaxMetric::kMax, true>(task)
-               : relax_run<RelaxMetric::kMax, false>(task);
+    relax_by<RelaxMetric::kMax>(task);
 }
 
 /// Returns the least of the lanes, by halves.

@@ -5,11 +5,25 @@
 
 namespace swivel {
 
+/// Returns the norm that a cost metric takes of weighted moves.
+inline RelaxMetric relax_metric(CostMetric metric) {
+  switch (metric) {
+    case CostMetric::kL2:
+      return RelaxMetric::kL2;
+    case CostMetric::kL1:
+      return RelaxMetric::kL1;
+    case CostMetric::kMax:
+    case CostMetric::kTime:
+      break;
+  }
+  return RelaxMetric::kMax;
+}
+
 /// Returns a kernel's task with a lattice's metric and the joints' largest moves on a step; the
 /// caller adds the runs of nodes.
 inline RelaxTask<double> relax_task(const Lattice& lattice, int step) {
   RelaxTask<double> task;
-  task.metric = lattice.cost().metric == CostMetric::kL2 ? RelaxMetric::kL2 : RelaxMetric::kMax;
+  task.metric = relax_metric(lattice.cost().metric);
   task.wraps = false;
   const Config& bound = lattice.step_bound(step);
   for (int j = 0; j < kDof; ++j) {

@@ -38,7 +38,8 @@ class JointBox {
   [[nodiscard]] bool may_cost_less(const JointBox& other, const RelaxTask<double>& task,
                                    double cost) const {
     const double room = cost * (1 + 1e-12) + 1e-11 * task.unit;  // costs are rounded
-    const bool squares = task.metric == RelaxMetric::kL2;
+    const bool squares = task.metric == RelaxMetric::kL2,
+               most_of_all = task.metric == RelaxMetric::kMax;
     const double most = squares ? room * room : room;
     double sum = 0;
     for (std::size_t k = kDof; k-- > 0;) {  // the last joints move most
@@ -46,7 +47,7 @@ class JointBox {
                            radius_[k] - other.radius_[k];
       if (apart <= 0) continue;
       const double x = task.scale[k] * apart;
-      sum = squares ? sum + x * x : std::max(sum, x);
+      sum = most_of_all ? std::max(sum, x) : sum + (squares ? x * x : x);
       if (apart > task.bound[k] || sum > most) return false;
     }
     return true;

@@ -54,9 +54,9 @@ std::shared_ptr<Lattice> TaskLattice::free_lattice(const PreparedRobot& robot,
 bool TaskLattice::has_second(const PreparedRobot& robot, const PathProblem& problem,
                              const Budget& budget) const {
   // Arcs treat as circles what a caller's hook may tell apart.
-  return coaxial_ || (!turns_told_apart_ && leads_past_singularity(robot.arm().chain,
-                                                                   robot.arm_class(), path_,
-                                                                   problem, budget));
+  return coaxial_ ||
+         (!turns_told_apart_ &&
+          leads_past_singularity(robot.arm().chain, robot.arm_class(), path_, problem, budget));
 }
 
 std::shared_ptr<Lattice> TaskLattice::second(const PreparedRobot& robot, const PathProblem& problem,

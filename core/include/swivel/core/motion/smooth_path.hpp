@@ -15,7 +15,8 @@ namespace swivel {
 struct SmoothObjective {
   /// the diagonal of W, by joint
   std::array<double, kDof> weights{};
-  int power = 2;           ///< p, even; a large one approximates the largest |r_j|
+  /// p: 1, or even; a large one approximates the largest |r_j|
+  int power = 2;
   double bending = 0;      ///< m^3
   double most_change = 0;  ///< most change of the coordinate from a layer to the next, rad
   /// Layers from which the joints jump to the next: bends across such a step do not count.
@@ -35,7 +36,9 @@ struct CoordinateBox {
 /// Returns coordinates, within their boxes, of a local minimum of the objective that is sought from
 /// x on; it is never worse than x, brought into the boxes. Newton's method with derivatives by
 /// central differences, a pentadiagonal Hessian, Levenberg's shift where it is not positive
-/// definite, and bounds by a primal-dual active set (Hintermueller, Ito and Kunisch 2002).
+/// definite, and bounds by a primal-dual active set (Hintermueller, Ito and Kunisch 2002). With
+/// p = 1 the magnitudes |r_j| are rounded off, sqrt(r_j^2 + tip^2), by tips that shrink from 3e-2
+/// to 3e-4 of the joints' mean move; each minimum is where the next one is sought from.
 /// Deterministic. Throws Stopped.
 [[nodiscard]] std::vector<double> smooth_minimum(const LayerSolver& solver,
                                                  const SmoothObjective& objective,

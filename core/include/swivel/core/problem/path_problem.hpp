@@ -67,9 +67,9 @@ struct AttachedBody {
 
 /// What clearance is asked of: the motions between layers as well as nodes, or nodes alone.
 enum class EdgeMode { kContinuous, kNodes };
-/// How a step's joint moves become a cost: their weighted Euclidean norm, the largest weighted one,
-/// or the time that the slowest joint needs.
-enum class CostMetric { kL2, kMax, kTime };
+/// How a step's joint moves become a cost: their weighted Euclidean norm, the sum of their weighted
+/// magnitudes, the largest weighted one, or the time that the slowest joint needs.
+enum class CostMetric { kL2, kL1, kMax, kTime };
 
 /// How far the curve that the tool follows may leave the polyline through the waypoints, so that
 /// corners are rounded. Zero: corners stay sharp.

@@ -48,7 +48,7 @@ struct RefineOptions {
 /// another basin turns out cheaper (RefineOptions); for arms without an arm angle, the coordinate
 /// is the length along the self-motion from the given joints. Minimises sum |W dq| + l^3 sum h
 /// |q''|^2, where q'' is the second divided difference over the travel and l =
-/// Refinement::smoothing; |r| is the Euclidean norm, or (sum |r_j|^16)^(1/16) for metrics of the
+/// Refinement::smoothing; |r| is the norm of the metric, (sum |r_j|^16)^(1/16) for those of the
 /// largest move. Uses Newton's method (smooth_path.hpp). Only the optimum's nodes and motions are
 /// validated, as the planners do: if one fails, the intervals of its layers shrink towards the
 /// given path, which is valid, and the optimum is sought again.

@@ -86,12 +86,12 @@ class SelfMotion {
   /// weighted norm lead from q; where these do not arrive, and three axes line up at q or there,
   /// that to which damped steps lead; else none.
   [[nodiscard]] std::optional<Config> image(const Config& q, const Pose& tool) const;
-  /// What the move from q to its image minimises: its weighted norm, or its largest weighted joint,
-  /// to first order.
-  enum class Least { kNorm, kLargest };
+  /// What the move from q to its image minimises: its weighted norm, the sum of its weighted
+  /// joints, or the largest of them, to first order.
+  enum class Least { kNorm, kSum, kLargest };
   /// Returns the image() of each configuration at the pose `tool`, in vector code. With
-  /// Least::kNorm they are those of image() bit for bit; with kLargest they drift along the
-  /// self-motion by up to 0.2 rad, to where the largest weighted joint moves least.
+  /// Least::kNorm they are those of image() bit for bit; with the others they drift along the
+  /// self-motion by up to 0.2 rad, to where the sum or the largest of the weighted moves is least.
   [[nodiscard]] std::vector<std::optional<Config>> images(std::span<const Config> q,
                                                           const Pose& tool,
                                                           Least least = Least::kNorm) const;
