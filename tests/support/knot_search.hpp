@@ -14,6 +14,7 @@
 #include "answer_order.hpp"
 #include "brute_force.hpp"
 #include "knot_problems.hpp"
+#include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/verify/check.hpp"
 
@@ -146,6 +147,27 @@ inline std::unique_ptr<Lattice> split_about(const Lattice& lattice, int layer) {
   }
 }
 
+/// Returns the steps of a path whose rows cost much more than their chord, by the definition.
+inline std::set<int> uneven_by_definition(const Lattice& lattice, const std::vector<int>& path,
+                                          std::vector<TrajectoryRow> rows) {
+  count_from_path(lattice.chain(), lattice.path_of_rows(), rows);
+  std::set<int> steps;
+  double chords = 0, whole = 0;
+  for (int k = 0; k + 1 < lattice.layers(); ++k) {
+    const double chord = lattice.edge_cost(
+        lattice.delta(*lattice.node(k, path[static_cast<std::size_t>(k)]),
+                      *lattice.node(k + 1, path[static_cast<std::size_t>(k) + 1])));
+    double along = 0;
+    for (int i = lattice.layer_of_rows(k) + 1; i <= lattice.layer_of_rows(k + 1); ++i) {
+      const auto row = static_cast<std::size_t>(i);
+      along += lattice.edge_cost(lattice.delta(rows[row - 1].q, rows[row].q));
+    }
+    if (lattice.can_halve(k) && along > 1.05 * chord) steps.insert(k);
+    chords += chord, whole += along;
+  }
+  return whole > 1.01 * chords ? steps : std::set<int>();
+}
+
 /// Searches a lattice, and halves its steps as long as the definition says so.
 inline PlainAnswer plan_plainly(const PreparedRobot& robot, const PathProblem& problem,
                                 std::unique_ptr<Lattice> first, const MayJoin& may_join) {
@@ -162,8 +184,10 @@ inline PlainAnswer plan_plainly(const PreparedRobot& robot, const PathProblem& p
             has_long_step(lattice) || found.path.empty() ? found.bound : found.cost;
         bound < kNone)
       answer.bound = bound;
+    std::set<int> uneven;
     if (!found.path.empty()) {
       std::vector<TrajectoryRow> rows = lattice.path_rows(found.path);
+      uneven = uneven_by_definition(lattice, found.path, rows);
       const double cost = check_trajectory(robot, problem, rows).cost;
       if (cost < answer.cost) {
         answer.cost = cost;
@@ -171,9 +195,10 @@ inline PlainAnswer plan_plainly(const PreparedRobot& robot, const PathProblem& p
         answer.rows = std::move(rows);
       }
     }
-    if (!found.narrow.empty()) {
-      if (answer.chords <= 1.01 * found.bound) return answer;
-      answer.last = lattice.with_knots(found.narrow, {});
+    if (!found.narrow.empty() || !uneven.empty()) {
+      if (uneven.empty() && answer.chords <= 1.01 * found.bound) return answer;
+      uneven.insert(found.narrow.begin(), found.narrow.end());
+      answer.last = lattice.with_knots(uneven, {});
       continue;
     }
     if (!answer.rows.empty()) return answer;

@@ -519,8 +519,9 @@ class JobPlan {
   }
 
   /// Searches the runs' lattices and, as long as that is worth it, lattices whose narrow steps
-  /// between knots are halved (KnotSearch). Returns the cheapest job of all, that of the coarsest
-  /// of equal ones; directions_ are its runs. With a job it ends a while before the budget does.
+  /// between knots (KnotSearch) are halved, and uneven_steps() of the answer. Returns the cheapest
+  /// job of all, that of the coarsest of equal ones; directions_ are its runs. With a job it ends a
+  /// while before the budget does.
   JobOutcome search(JobTransitions& transitions) {
     JobOutcome best = search_once(transitions, budget_);
     double least = row_cost(best);
@@ -578,6 +579,18 @@ class JobPlan {
     for_each_direction([&](const std::shared_ptr<PlannedRun>& run) { add_counters(*run); });
     return outcome;
   }
+  /// Adds the uneven_steps() of a job's runs to their narrow steps. Returns whether there are any.
+  bool add_uneven_steps(const JobOutcome& outcome) {
+    bool any = false;
+    for (std::size_t k = 0; k < outcome.paths.size(); ++k) {
+      PlannedRun& run = *directions_[k][outcome.runs[k]];
+      const SlotPath& path = outcome.paths[k];
+      const std::set<int> steps = uneven_steps(*run.lattice, path, run.lattice->path_rows(path));
+      run.narrow.narrow.insert(steps.begin(), steps.end());
+      any = any || !steps.empty();
+    }
+    return any;
+  }
   /// Returns the cost of the job's rows as far as turns of joints are told apart; kUnreachable
   /// where none was found.
   [[nodiscard]] double row_cost(const JobOutcome& outcome) const {
@@ -593,7 +606,9 @@ class JobPlan {
   }
   /// Returns whether more knots may give a job where none was found, or a cheaper one than the
   /// best, which costs `least`.
-  [[nodiscard]] bool is_worth_halving(const JobOutcome& last, double least) const {
+  [[nodiscard]] bool is_worth_halving(const JobOutcome& last, double least) {
+    // Chords cost no more than rows do.
+    if (last.cost < least && add_uneven_steps(last)) return true;
     return last.narrow && (least == kUnreachable || least > kWorthHalving * last.narrow_from);
   }
   /// Replaces lattices by such as have their narrow steps halved. What is known of nodes and edges

@@ -68,6 +68,7 @@ class Levels {
   FoundOnKnots run() {
     best_ = search_(first_, nullptr, budget_, &knots_);
     least_ = row_cost(*first_.lattice, best_);
+    uneven_ = uneven_steps(*first_.lattice, best_.outcome.path, best_.rows);
     if (best_.decided)
       while (is_worth_halving() && halve()) {
       }
@@ -85,20 +86,23 @@ class Levels {
  private:
   [[nodiscard]] const Searched& last() const { return finer_.empty() ? first_ : finer_.back(); }
   [[nodiscard]] bool is_worth_halving() const {
-    return worth_halving(knots_, best_.outcome) || ends_between_knots(*last().lattice, best_);
+    return !uneven_.empty() || worth_halving(knots_, best_.outcome) ||
+           ends_between_knots(*last().lattice, best_);
   }
   /// Searches a lattice with more knots than the last one. Returns false where the search ends: in
   /// time, or as there is no such lattice's answer.
   bool halve() {
     const KnotSearch before = std::exchange(knots_, {});
+    std::set<int> steps = std::exchange(uneven_, {});
+    steps.insert(before.narrow.begin(), before.narrow.end());
     knots_.most = least_;
     const Budget time = best_.outcome.path.empty() ? budget_ : most_of(budget_, options_);
     Found found;
     Searched next;
     try {
-      next.lattice = before.narrow.empty()
+      next.lattice = steps.empty()
                          ? with_all_layers_about(last().lattice, *best_.deepest, halve_, time)
-                         : halve_(last().lattice, before.narrow, time);
+                         : halve_(last().lattice, steps, time);
       found = search_(next, &last(), time, can_halve(*next.lattice) ? &knots_ : nullptr);
     } catch (const Stopped&) {
       if (!next.lattice) {  // the time was up before there was one
@@ -124,6 +128,7 @@ class Levels {
     if (!can_halve(lattice) && !found.outcome.path.empty()) knots_.bound = found.outcome.cost;
     if (knots_.bound == kUnreachable) knots_.bound = bound_before;
     const double cost = row_cost(lattice, found);
+    uneven_ = uneven_steps(lattice, found.outcome.path, found.rows);
     if (cost >= least_ && !best_.outcome.path.empty()) return;
     best_ = std::move(found);
     least_ = cost;
@@ -135,7 +140,8 @@ class Levels {
   const HalveSteps& halve_;
   const PlanOptions& options_;
   const Budget& budget_;
-  KnotSearch knots_;  // of the last lattice
+  KnotSearch knots_;      // of the last lattice
+  std::set<int> uneven_;  // steps of its answer that are worth halving
   Found best_;
   double least_ = kUnreachable;    // cost of the rows of best_
   std::size_t level_of_best_ = 0;  // 0: first_
@@ -191,6 +197,28 @@ bool can_halve(const Lattice& lattice) {
   for (int step = 0; step + 1 < lattice.layers(); ++step)
     if (lattice.can_halve(step)) return true;
   return false;
+}
+
+std::set<int> uneven_steps(const Lattice& lattice, const SlotPath& path,
+                           std::vector<TrajectoryRow> rows) {
+  constexpr double kUneven = 1.05, kWorthIt = 1.01;
+  if (path.empty() || rows.empty()) return {};
+  count_from_path(lattice.chain(), lattice.path_of_rows(), rows);
+  std::set<int> uneven;
+  double of_chords = 0, of_rows = 0;
+  for (int step = 0; step + 1 < static_cast<int>(path.size()); ++step) {
+    const auto k = static_cast<std::size_t>(step);
+    const double chord = lattice.edge_cost(
+        lattice.delta(*lattice.node(step, path[k]), *lattice.node(step + 1, path[k + 1])));
+    double along = 0;
+    for (int i = lattice.layer_of_rows(step); i < lattice.layer_of_rows(step + 1); ++i)
+      along += lattice.edge_cost(lattice.delta(rows[static_cast<std::size_t>(i)].q,
+                                               rows[static_cast<std::size_t>(i) + 1].q));
+    of_chords += chord;
+    of_rows += along;
+    if (along > kUneven * chord && lattice.can_halve(step)) uneven.insert(step);
+  }
+  return of_rows > kWorthIt * of_chords ? uneven : std::set<int>();
 }
 
 void take_verdicts(CostToGo& coarser, CostToGo& finer) {

@@ -42,9 +42,9 @@ struct FoundOnKnots {
 };
 
 /// Searches a lattice and, as long as that is worth it, lattices whose narrow steps between knots
-/// are halved (KnotSearch). Returns the cheapest answer of all, the coarsest of equal ones. With an
-/// answer it ends a while before the budget does, so that there is time to prove it. `halve` makes
-/// the lattices. Throws as `search` does for the first lattice.
+/// (KnotSearch) are halved, and uneven_steps() of the answer. Returns the cheapest answer of all,
+/// the coarsest of equal ones. With an answer it ends a while before the budget does, so that there
+/// is time to prove it. `halve` makes the lattices. Throws as `search` does for the first lattice.
 [[nodiscard]] FoundOnKnots search_on_knots(Searched& first, const SearchLattice& search,
                                            const HalveSteps& halve, const PlanOptions& options,
                                            const Budget& budget);
@@ -58,6 +58,12 @@ struct FoundOnKnots {
 
 /// Returns whether a lattice has a step that can be halved.
 [[nodiscard]] bool can_halve(const Lattice& lattice);
+
+/// Returns the steps between knots that are halved though a path is valid, since it drifts between
+/// them: if its rows cost more than 1.01 times what its chords do, those that can be halved and
+/// whose rows cost more than 1.05 times what their chord does. `rows`: Lattice::path_rows().
+[[nodiscard]] std::set<int> uneven_steps(const Lattice& lattice, const SlotPath& path,
+                                         std::vector<TrajectoryRow> rows);
 
 /// Takes over what is known of the nodes and edges of a lattice into the cost-to-go of one with
 /// more knots, or of the same. A sweep must follow.

@@ -403,8 +403,8 @@ MotionPlan plan_motion(Planner& planner, const PlanOptions& options, bool refine
     return plan;
   }
   other.result.warnings.push_back(
-      formatted("the cheapest path, of cost %.6g, asks joints to jump, which no controller can "
-                "follow: this is the cheapest that keeps its branch",
+      formatted("the path found first, of cost %.6g, asks joints to jump, which no controller can "
+                "follow: this one keeps its branch",
                 plan.result.cost));
   return other;
 }
