@@ -252,30 +252,54 @@ double best_of_all_places(const PreparedRobot& robot, const Problem& job, const 
   return least;
 }
 
-// Places cost at most one per cent more than the best of all places with as many lift-offs, each
-// planned as a job of its own.
+// Places cost as little as the best of all places with as many lift-offs, each planned as a job of
+// its own, where moves are straight; at most five per cent more where they lead around something,
+// and in rare cases of nodes at limits that a line has and a run has not.
 TEST(LiftOffs, PlacesAgainstAllPlaces) {
   Random random(seed("LiftOffs.PlacesAgainstAllPlaces"));
   const Problem like = bench();
   const int count = trials(24);
-  int two = 0, more = 0, tried = 0;
+  int two = 0, more = 0, tried = 0, homes = 0, lines = 0, straights = 0, exact = 0;
   double worst = 1;
   for (int trial = 0; two + more < count && trial < 10 * count; ++trial) {
-    const Problem job = random_ring(like, random, trial % 4 == 0 ? 2.2 : 1.4);
+    Problem job = random_ring(like, random, trial % 4 == 0 ? 2.2 : 1.4);
     const PreparedRobot robot(problem_of_run(job, {0, false}));
     const Plain plain(robot, job);
     const auto runs = plain.least_runs(job.arm().lift->overlap);
     if (!runs || *runs < 2 || *runs > 3) continue;
+    if (random.coin()) job.arm().home = like.arm().home, ++homes;
+    if (random.coin()) {
+      Stroke& stroke = job.arm().strokes.front();
+      stroke.approach = Vector3d(0, 0, random.coin() ? -random.uniform(0.02, 0.06) : 0.0);
+      stroke.retract = Vector3d(0, 0, random.coin() ? -random.uniform(0.02, 0.06) : 0.0);
+      ++lines;
+    }
     ++(*runs == 2 ? two : more);
     const Answer found = plan_job(robot, job);
-    ASSERT_EQ(found.status, PlanStatus::kSolved);
+    SCOPED_TRACE("trial " + std::to_string(trial));
+    if (found.status != PlanStatus::kSolved) {  // a line at the stroke's own end may be barred
+      ASSERT_FALSE(job.arm().strokes.front().approach.isZero(0) &&
+                   job.arm().strokes.front().retract.isZero(0));
+      continue;
+    }
+    if (static_cast<int>(found.arm().lift_offs.size()) + 1 != *runs) continue;  // lines need more
     const double lifts = job.arm().lift->cost * (*runs - 1);
     const double best = best_of_all_places(robot, job, plain, *runs - 1, tried) + lifts;
-    EXPECT_LE(found.cost, 1.01 * best) << "trial " << trial;
+    const bool straight =
+        std::all_of(found.arm().parts.begin(), found.arm().parts.end(),
+                    [](const Part& part) { return part.run || part.rows.size() <= 2; });
+    straights += straight;
+    exact += straight && found.cost <= (1 + 1e-9) * best;
+    EXPECT_LE(found.cost, (straight ? 1.01 : 1.05) * best);
     worst = std::max(worst, found.cost / best);
   }
-  std::printf("%d with two runs, %d with three; %d jobs planned to compare; worst %.6f of best\n",
-              two, more, tried, worst);
+  std::printf(
+      "%d with two runs, %d with three, %d with a home, %d with lines, %d with straight "
+      "moves alone, %d of these as cheap as the best; %d jobs planned to compare; worst %.6f of "
+      "best\n",
+      two, more, homes, lines, straights, exact, tried, worst);
+  EXPECT_GE(straights, at_least(12));
+  EXPECT_GE(exact, straights - straights / 32);
   EXPECT_GE(two + more, count);
   EXPECT_GE(more, at_least(3));
 }

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
 #include "cost_to_go/kernels/relax.hpp"
+#include "swivel/core/base/angle.hpp"
 #include "swivel/core/lattice/lattice.hpp"
 
 namespace swivel {
@@ -35,6 +41,32 @@ inline RelaxTask<double> relax_task(const Lattice& lattice, int step) {
   }
   task.unit = lattice.cost_unit();
   return task;
+}
+
+/// Where nodes lie, by blocks: RelaxTask::block_middle and block_radius, rad, by joint.
+struct RelaxBlocks {
+  std::array<std::vector<double>, kDof> middle, radius;
+};
+/// Returns the blocks of nodes with these joints.
+inline RelaxBlocks relax_blocks(const Lattice& lattice,
+                                const std::array<std::vector<double>, kDof>& joints) {
+  constexpr std::size_t kBlock = RelaxTask<double>::kBlock;
+  RelaxBlocks blocks;
+  for (std::size_t k = 0; k < kDof; ++k) {
+    const std::vector<double>& joint = joints[k];
+    for (std::size_t first = 0; first < joint.size(); first += kBlock) {
+      double low = 0, high = 0;
+      for (std::size_t at = first; at < std::min(joint.size(), first + kBlock); ++at) {
+        double step = joint[at] - joint[first];
+        if (lattice.continuous()[k] && std::abs(step) > kPi) step = wrap_angle(step);
+        low = std::min(low, step);
+        high = std::max(high, step);
+      }
+      blocks.middle[k].push_back(joint[first] + (low + high) / 2);
+      blocks.radius[k].push_back((high - low) / 2);
+    }
+  }
+  return blocks;
 }
 
 }  // namespace swivel

@@ -27,7 +27,7 @@ const ExplicitCostToGo::Nodes& ExplicitCostToGo::nodes_of(int layer) {
     for (const Lattice::Node& node : listed_)
       joint[static_cast<std::size_t>(node.slot)] = node.q[static_cast<Eigen::Index>(k)];
   }
-  nodes->blocks = blocks_of(nodes->joints);
+  nodes->blocks = relax_blocks(*lattice_, nodes->joints);
   known = std::move(nodes);
   return *known;
 }
@@ -38,28 +38,8 @@ void ExplicitCostToGo::share_nodes(LayerValues& coarser, std::span<const int> la
     nodes_[static_cast<std::size_t>(layer_here[layer])] = others[layer];
 }
 
-ExplicitCostToGo::Blocks ExplicitCostToGo::blocks_of(const Joints& joints) const {
-  constexpr std::size_t kBlock = RelaxTask<double>::kBlock;
-  Blocks blocks;
-  for (std::size_t k = 0; k < kDof; ++k) {
-    const Values& joint = joints[k];
-    for (std::size_t first = 0; first < joint.size(); first += kBlock) {
-      double low = 0, high = 0;
-      for (std::size_t at = first; at < std::min(joint.size(), first + kBlock); ++at) {
-        double step = joint[at] - joint[first];
-        if (lattice_->continuous()[k] && std::abs(step) > kPi) step = wrap_angle(step);
-        low = std::min(low, step);
-        high = std::max(high, step);
-      }
-      blocks.middle[k].push_back(joint[first] + (low + high) / 2);
-      blocks.radius[k].push_back((high - low) / 2);
-    }
-  }
-  return blocks;
-}
-
 void ExplicitCostToGo::relax_between(int step, const Joints& from, const Joints& to,
-                                     const Blocks* blocks, const Values& others, Values& out) {
+                                     const RelaxBlocks* blocks, const Values& others, Values& out) {
   const std::size_t count = from[0].size(), partners = others.size();
   if (partners == 0 || count == 0) return;
   RelaxTask<double> task = relax_task(*lattice_, step);

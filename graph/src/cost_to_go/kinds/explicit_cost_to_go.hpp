@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "cost_to_go/kernels/relax_task.hpp"
 #include "cost_to_go/kinds/layer_values.hpp"
 
 namespace swivel {
@@ -37,21 +38,16 @@ class ExplicitCostToGo final : public LayerValues {
   void relax_some(int layer, const std::vector<int>& slots, Values& out) override;
   /// Replaces `out` by the joints of some nodes of a layer.
   void gather(int layer, const std::vector<int>& slots, Joints& out);
-  /// Where the nodes of a layer lie, by blocks: RelaxTask::block_middle and block_radius.
-  struct Blocks {
-    Joints middle, radius;
-  };
-  [[nodiscard]] Blocks blocks_of(const Joints& joints) const;
   /// Lowers `out`, for nodes with joints `from` of the layer before `step`, to the least of edge
   /// cost plus value over nodes with joints `to`, whose values are `others`, and which lie in
   /// `blocks`, if given.
-  void relax_between(int step, const Joints& from, const Joints& to, const Blocks* blocks,
+  void relax_between(int step, const Joints& from, const Joints& to, const RelaxBlocks* blocks,
                      const Values& others, Values& out);
 
   /// What the kernels read of the nodes of a layer.
   struct Nodes {
     Joints joints;
-    Blocks blocks;
+    RelaxBlocks blocks;
   };
   /// Returns those of a layer. They are gathered when they are first asked for.
   [[nodiscard]] const Nodes& nodes_of(int layer);

@@ -5,12 +5,14 @@
 #include <cmath>
 #include <utility>
 
+#include "job/lift_offs/piece_planes.hpp"
 #include "job/transitions/job_transitions.hpp"
 #include "plan/layout/told_turns.hpp"
+#include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/input_error.hpp"
-#include "swivel/graph/cost_to_go/cost_to_go.hpp"
 #include "validity/collision_validity.hpp"
 #include "validity/hooked_validity.hpp"
 
@@ -18,7 +20,7 @@ namespace swivel {
 
 namespace {
 
-constexpr int kMostLayersToCut = 5000;  // all nodes and edges are stored
+constexpr int kMostLayersToCut = 5000;  // all edges are stored
 constexpr double kSameLength = 1e-9;    // m
 
 /// Returns the problem of a stroke without approach and retract, whose corners stay sharp: where
@@ -30,6 +32,22 @@ PathProblem bare_problem(const Problem& job, std::size_t stroke) {
   bare.arm().strokes[stroke].retract.setZero();
   return problem_of_run(bare, {stroke, false});
 }
+
+/// Returns the layer of a path at an arc length, m.
+int layer_at(const ToolPath& path, double s) {
+  int layer = 0;
+  while (layer + 1 < path.size() && path.layer(layer).s < s - kSameLength) ++layer;
+  return layer;
+}
+
+/// A line with what its validity refers to.
+struct Line {
+  PathProblem problem;
+  std::optional<ToolPath> path;
+  std::shared_ptr<const Lattice> lattice;
+  std::optional<CollisionValidity> collision;
+  std::optional<HookedValidity> validity;
+};
 
 /// Throws InputError for what strokes in several runs do not have.
 void require_cuttable(const PreparedRobot& robot, const PathProblem& problem,
@@ -64,18 +82,19 @@ LiftSearch::LiftSearch(const PreparedRobot& robot, const Problem& job, std::size
   require_cuttable(robot, problem_, path_);
   lattice_ = with_all_windings(
       make_lattice(robot.arm().chain, robot.arm_class(), path_, problem_, budget));
-  CollisionValidity validity(*lattice_, world_, world_.edge_rule(robot.radii()),
-                             problem_.limits.edges, proofs_, executor_, 0, budget_);
-  HookedValidity hooked(*lattice_, validity, hooks_, budget_);
-  program_.emplace(*lattice_, hooked, budget_);
-  find_places(job.arm().lift->overlap);
-  begin_known_.resize(places_.size());
-  end_known_.resize(places_.size());
-  find_lines(0, path_.size() - 1);
-  for (;;) {
-    least_ = program_->least_cuts();
-    if (!least_ || best(*least_)) return;
-  }
+  collision_.emplace(*lattice_, world_, world_.edge_rule(robot.radii()), problem_.limits.edges,
+                     proofs_, executor_, 0, budget_);
+  validity_.emplace(*lattice_, *collision_, hooks_, budget_);
+  const Stroke& own = job.arm().strokes[stroke];
+  CutProgram::Setting setting;
+  setting.places = places_ = find_places(job.arm().lift->overlap);
+  if (stroke == 0) setting.home_before = job.arm().home;
+  if (stroke + 1 == job.arm().strokes.size()) setting.home_after = job.arm().home;
+  setting.approach = !own.approach.isZero(0);
+  setting.retract = !own.retract.isZero(0);
+  setting.make_line = [this](int layer, CutProgram::LineKind kind) { return line(layer, kind); };
+  program_.emplace(*lattice_, *validity_, std::move(setting), budget_);
+  least_ = program_->least_cuts();
 }
 
 bool LiftSearch::turns_on_the_spot(int layer) const {
@@ -86,95 +105,64 @@ bool LiftSearch::turns_on_the_spot(int layer) const {
          (layer + 1 < path_.size() && same(layer, layer + 1));
 }
 
-void LiftSearch::find_places(double overlap) {
-  places_.resize(static_cast<std::size_t>(path_.size()));
+std::vector<CutPlace> LiftSearch::find_places(double overlap) const {
+  std::vector<CutPlace> places(static_cast<std::size_t>(path_.size()));
   for (int i = 1; i + 1 < path_.size(); ++i) {
     if (turns_on_the_spot(i)) continue;
     int begin = i;
     while (begin > 0 && (path_.layer(begin).s > path_.layer(i).s - overlap + kSameLength ||
                          turns_on_the_spot(begin)))
       --begin;
-    places_[static_cast<std::size_t>(i)] = {true, begin};
+    places[static_cast<std::size_t>(i)] = {true, begin};
   }
-  program_->set_places(places_);
+  return places;
 }
 
-/// Finds what the approach costs at the layer `begin` and the retract at the layer `end`. Returns
-/// false if both were known.
-bool LiftSearch::find_lines(int begin, int end) {
-  const Stroke& stroke = job_->arm().strokes[stroke_];
-  const auto b = static_cast<std::size_t>(begin), e = static_cast<std::size_t>(end);
-  bool found = false;
-  if (begin_known_[b] == 0 && !stroke.approach.isZero(0)) {
-    program_->set_begin_costs(begin, line_costs(begin, stroke.approach));
-    found = true;
-  }
-  if (end_known_[e] == 0 && !stroke.retract.isZero(0)) {
-    program_->set_end_costs(end, line_costs(end, stroke.retract));
-    found = true;
-  }
-  begin_known_[b] = end_known_[e] = 1;
-  return found;
-}
-
-/// Returns the cheapest cuts of a number. Lines count as free and without cost until a path that
-/// has them is the cheapest.
-std::optional<CutPath> LiftSearch::best(int count) {
-  for (;;) {
-    auto found = program_->best(count, without_, budget_);
-    if (!found) return std::nullopt;
-    bool more = false;
-    for (const int end : found->ends)
-      more = find_lines(places_[static_cast<std::size_t>(end)].resumed, end) || more;
-    if (!more) return found;
-  }
-}
-
-/// Returns for each valid node of a layer what the straight line from there to where the tool
-/// stands with `offset` costs; kUnreachable where it is barred. A line is as good in both
-/// directions.
-std::vector<double> LiftSearch::line_costs(int layer, const Vector3d& offset) {
+CutLine LiftSearch::line(int layer, CutProgram::LineKind kind) {
+  const bool approach = kind == CutProgram::LineKind::kApproach;
   const double s = path_.layer(layer).s;
-  PathProblem line = problem_;
-  line.end.reset();
-  if (layer == 0) {
-    // The stroke beyond the line says how the tool's frame is carried along its axis.
-    line.waypoints.insert(line.waypoints.begin(), line.waypoints.front());
-  } else if (layer + 1 < path_.size()) {
-    const Problem cut = with_lift_offs(*job_, {{stroke_, s, s}});
-    line.waypoints = cut.arm().strokes[stroke_].waypoints;
+  // the run that begins or ends at the layer, with this line alone
+  Problem job = *job_;
+  Stroke& stroke = job.arm().strokes[stroke_];
+  stroke.smooth.reset();
+  stroke.end.reset();
+  const double length = stroke.approach.norm();
+  (approach ? stroke.retract : stroke.approach).setZero();
+  const bool cut = approach ? layer > 0 : layer + 1 < path_.size();
+  if (cut) job = with_lift_offs(job, {{stroke_, s, s}});
+  const auto line = std::make_shared<Line>();
+  const std::size_t run = stroke_ + (cut && approach ? 1 : 0);
+  line->problem = on_all_layers(problem_of_run(job, {run, false}), robot_->arm_class());
+  const PathProblem& problem = line->problem;
+  line->path = problem_path(problem, robot_->arm().chain, budget_);
+  ToolPath& path = *line->path;
+  std::vector<ArmPlane> planes;
+  if (approach) {
+    planes = planes_of_piece(job.arm().strokes[run], problem, *robot_, path, budget_);
+    path.end_at(layer_at(path, length));
+    if (!planes.empty()) planes.resize(static_cast<std::size_t>(path.size()));
+  } else {
+    path.begin_at(s, path_.layer(layer).tool, 0, problem.source);
   }
-  if (layer > 0) line.waypoints.push_back(line.waypoints.back());
-  const auto beyond = layer > 0 ? line.waypoints.end() - 1 : line.waypoints.begin() + 1;
-  const Vector3d away = beyond->orientation.normalized() * offset;
-  for (auto waypoint = beyond; waypoint != line.waypoints.end(); ++waypoint)
-    waypoint->position += away;
-  ToolPath path = problem_path(line, robot_->arm().chain, budget_);
-  if (layer == 0) {
-    int end = 1;
-    while (path.layer(end).waypoint != 1) ++end;
-    path.end_at(end);
-  }
-  path.begin_at(s, path_.layer(layer).tool, 0, line.source);
-  const auto lattice = with_all_windings(
-      make_lattice(robot_->arm().chain, robot_->arm_class(), path, line, budget_));
-  CollisionValidity validity(*lattice, world_, world_.edge_rule(robot_->radii()), line.limits.edges,
-                             proofs_, executor_, 0, budget_);
-  HookedValidity hooked(*lattice, validity, hooks_, budget_);
-  const CostsToEnd line_ends = costs_to_end(*lattice, hooked, budget_);
-  std::vector<double> costs;
-  constexpr double kSameJoints = 1e-6;  // rad
-  for (const Lattice::Node& node : program_->nodes(layer)) {
-    costs.push_back(kUnreachable);
-    for (std::size_t k = 0; k < line_ends.nodes.size(); ++k)
-      if ((line_ends.nodes[k].q - node.q).cwiseAbs().maxCoeff() <= kSameJoints)
-        costs.back() = std::min(costs.back(), line_ends.costs[k]);
-  }
-  return costs;
+  const Chain& chain = robot_->arm().chain;
+  const ArmClass& arm = robot_->arm_class();
+  line->lattice = with_all_windings(
+      planes.empty() ? make_lattice(chain, arm, path, problem, budget_)
+                     : std::make_unique<SrsLattice>(
+                           chain, *arm.srs, path, problem, budget_, std::move(planes), std::nullopt,
+                           SrsLattice::possible_circles(chain, *arm.srs, path, problem)));
+  line->collision.emplace(*line->lattice, world_, world_.edge_rule(robot_->radii()),
+                          problem.limits.edges, proofs_, executor_, 0, budget_);
+  line->validity.emplace(*line->lattice, *line->collision, hooks_, budget_);
+  // Lists have other nodes in another path: those of a line are near those of the stroke.
+  constexpr double kSameOnGrids = 1e-6, kNearInLists = 0.2;  // rad
+  return {line->lattice,
+          {line, &*line->validity},
+          arm.kind == ArmKind::kSrs ? kSameOnGrids : kNearInLists};
 }
 
 std::optional<LiftSearch::Places> LiftSearch::next(int count) {
-  const auto found = best(count);
+  const auto found = program_->best(count);
   last_.clear();
   if (!found) return std::nullopt;
   last_ = found->ends;
@@ -187,12 +175,11 @@ std::optional<LiftSearch::Places> LiftSearch::next(int count) {
 
 void LiftSearch::leave_out(std::size_t k, int around) {
   for (int layer = last_[k] - around; layer <= last_[k] + around; ++layer)
-    without_.push_back({static_cast<int>(k), layer});
+    program_->bar(static_cast<int>(last_.size() - k), layer);
 }
 
-double LiftSearch::reach(double from) const {
-  int begin = 0;
-  while (begin + 1 < path_.size() && path_.layer(begin).s < from - kSameLength) ++begin;
+double LiftSearch::reach(double from) {
+  const int begin = layer_at(path_, from);
   return path_.layer(std::max(begin, program_->reach(begin))).s;
 }
 

@@ -9,19 +9,22 @@
 #include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/problem/hooks.hpp"
 #include "swivel/core/problem/problem.hpp"
-#include "swivel/graph/eager/cut_program.hpp"
+#include "swivel/graph/search/cut_program.hpp"
 #include "swivel/parallel/executor.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
+#include "validity/collision_validity.hpp"
+#include "validity/hooked_validity.hpp"
 
 namespace swivel {
 
 /// Finds places at which the tool lifts off from a stroke of a job, the cheapest first: the least
-/// cost of its runs with straight moves between them that nothing bars. Runs begin and end with the
-/// stroke's approach and retract.
+/// cost of its runs with their approach and retract, the moves between them, and those from and to
+/// home where the stroke is the job's first or last one. Joints move straight, and nothing bars
+/// these moves.
 class LiftSearch {
  public:
-  /// Asks about all nodes and edges of the stroke's lattice, `check` (the caller's own rule, or
-  /// null) among others, beside which `threads` must be 1. Both references must outlive this.
+  /// Finds the least number of lift-offs. `check`: the caller's own rule, or null, beside which
+  /// `threads` must be 1. Both references must outlive this.
   /// Throws InputError for an arm whose roll and arm angle are both free and for a stroke of more
   /// than 5000 layers, and Stopped.
   LiftSearch(const PreparedRobot& robot, const Problem& job, std::size_t stroke,
@@ -43,16 +46,15 @@ class LiftSearch {
   void leave_out(std::size_t k, int around);
   /// Returns the arc length, m, that the longest run from an arc length reaches, whatever lines it
   /// begins and ends with.
-  [[nodiscard]] double reach(double from) const;
+  [[nodiscard]] double reach(double from);
   /// Returns what a straight move of the joints costs.
   [[nodiscard]] double distance(const Config& from, const Config& to) const;
 
  private:
-  void find_places(double overlap);
-  bool find_lines(int begin, int end);
-  [[nodiscard]] std::optional<CutPath> best(int count);
-  [[nodiscard]] std::vector<double> line_costs(int layer, const Vector3d& offset);
+  [[nodiscard]] std::vector<CutPlace> find_places(double overlap) const;
   [[nodiscard]] bool turns_on_the_spot(int layer) const;
+  /// Returns the approach or retract at a layer.
+  [[nodiscard]] CutLine line(int layer, CutProgram::LineKind kind);
 
   const PreparedRobot* robot_;
   const Problem* job_;
@@ -65,11 +67,11 @@ class LiftSearch {
   Executor executor_;
   ToolPath path_;
   std::shared_ptr<Lattice> lattice_;
-  std::optional<CutProgram> program_;
+  std::optional<CollisionValidity> collision_;
+  std::optional<HookedValidity> validity_;
   std::vector<CutPlace> places_;
-  std::vector<std::uint8_t> begin_known_, end_known_;  // by layer: whether lines were asked about
+  std::optional<CutProgram> program_;
   std::optional<int> least_;
-  std::vector<CutProgram::Cut> without_;
   std::vector<int> last_;  // layers of the places returned last
 };
 

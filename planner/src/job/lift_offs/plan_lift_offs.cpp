@@ -125,20 +125,24 @@ class LiftPlan {
   /// Chooses the places of a stroke: plans the job with the cheapest ones, as long as others may be
   /// cheaper with their moves around obstacles.
   void choose(CutStroke& stroke) {
-    const bool alone = job_.arm().strokes.size() == 1 && !job_.arm().home;
-    std::optional<double> rest;  // cost of everything but the stroke
+    const bool alone = job_.arm().strokes.size() == 1;
+    std::optional<double> rest;  // cost of everything but the stroke, and home beside it
     std::optional<LiftSearch::Places> kept;
     double least = std::numeric_limits<double>::infinity();
     int failures = 0;
     for (int k = 0; k < kMostTries; ++k) {
       const Answer found = evaluate();
-      const std::vector<std::size_t> faults = faults_of(found, stroke);
+      std::vector<std::size_t> faults = faults_of(found, stroke);
       if (found.arm().parts.empty()) {
         ++failures;
       } else {
         const double cost = found.lattice_cost;
         if (!rest) rest = alone ? 0 : cost - stroke.places.cost - detours(found, stroke);
         if (cost < least) least = cost, kept = stroke.places;
+        // A move that the places count on is barred, and another one took its place.
+        constexpr double kRounding = 1e-9;
+        if (faults.empty() && cost > (1 + kRounding) * (*rest + stroke.places.cost))
+          faults = {dearest_lift_off(found)};
       }
       if (faults.empty() || found.status == PlanStatus::kTimeout ||
           found.status == PlanStatus::kCancelled)
@@ -185,6 +189,18 @@ class LiftPlan {
       if (k && *k > 0) faults.insert(*k - 1);
     }
     return {faults.begin(), faults.end()};
+  }
+  /// Returns the number, from 0, of the lift-off whose move costs most.
+  [[nodiscard]] static std::size_t dearest_lift_off(const Answer& found) {
+    std::size_t dearest = 0, number = 0;
+    double most = -1;
+    const std::vector<Part>& parts = found.arm().parts;
+    for (std::size_t k = 1; k + 1 < parts.size(); ++k) {
+      if (parts[k].run) continue;
+      if (parts[k].cost > most) most = parts[k].cost, dearest = number;
+      ++number;
+    }
+    return dearest;
   }
   /// Returns by how much the transitions of a stroke's lift-offs are dearer than straight ones.
   [[nodiscard]] double detours(const Answer& found, const CutStroke& stroke) const {
