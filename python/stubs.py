@@ -66,8 +66,8 @@ BASES = {"TrajectoryRow": ["tuple[float, ...]"]}
 ARGUMENTS = {"Placements.best by": "_Criterion | Sequence[_Criterion]"}
 MAYBE = set(
     """Answer.cost Answer.diagnosis Answer.refinement Answer.motion Answer.bound Answer.bound_any
-    Answer.gap Answer.least_cost Arm.diagnosis Arm.refinement Arm.least_cost Run.least_cost Run.cost
-    Run.diagnosis
+    Answer.bound_orders Answer.gap Answer.least_cost Arm.diagnosis Arm.refinement Arm.least_cost
+    Run.least_cost Run.cost Run.diagnosis
     Placement.cost Placement.clearance Placement.clearance_margin Placement.joint_margin
     Placement.slide_margin Placement.tool_speed Placement.failed_s Episode.cost Episode.failed_s
     Episode.tool_path_error_mm_mean Episode.tool_path_error_mm_max Planned.cost

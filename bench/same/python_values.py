@@ -118,6 +118,7 @@ def job(file):
         "cost",
         "bound",
         "bound_any",
+        "bound_orders",
         "gap",
         "no_transition",
         "barred_by",

@@ -66,7 +66,9 @@ KEYS_OF_SOME = {
             "order", "runs", "transitions", "lift_offs", "no_transition", "transition_counters",
             "parts"
         ],
-        "bounds of a search over transitions": ["bound", "bound_any", "gap", "lattice_cost"],
+        "bounds of a search over transitions": [
+            "bound", "bound_any", "bound_orders", "gap", "lattice_cost"
+        ],
         "of the one arm": ["partial", "robot_pairs", "held", "joint_names"],
     },
     "two arms": {

@@ -45,6 +45,7 @@ Answer plan_of_two() {
   result.lattice_cost = 6;
   result.bound = 5;
   result.bound_any = 4;
+  result.bound_orders = 4.5;
   result.planner = "parallel";
   result.arm().joint_names = kNames;
   result.arm().transitions = {7, 2, 3};
@@ -252,6 +253,7 @@ TEST(JobResult, Solved) {
   EXPECT_EQ(json["lattice_cost"], 6.0);
   EXPECT_EQ(json["bound"], 5.0);
   EXPECT_EQ(json["bound_any"], 4.0);
+  EXPECT_EQ(json["bound_orders"], 4.5);
   EXPECT_NEAR(json["gap"].get<double>(), 0.2, 1e-12);
   EXPECT_EQ(json["order"], Json::parse(R"([{"stroke": "right", "reversed": true},
                                            {"stroke": "left", "reversed": false}])"));
@@ -301,7 +303,8 @@ Answer without_a_job(bool stroke) {
 
 TEST(JobResult, Unsolved) {
   const Json stroke = Json::parse(to_json(without_a_job(true), two_strokes()));
-  for (const char* const key : {"cost", "bound", "bound_any", "gap", "checked", "no_transition"})
+  for (const char* const key :
+       {"cost", "bound", "bound_any", "bound_orders", "gap", "checked", "no_transition"})
     EXPECT_TRUE(stroke[key].is_null()) << key;
   EXPECT_EQ(stroke["runs"][0]["status"], "infeasible");
   EXPECT_TRUE(stroke["runs"][0]["least_cost"].is_null());

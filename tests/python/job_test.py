@@ -79,7 +79,10 @@ class Jobs(unittest.TestCase):
             timed = swivel.plan(swivel.load(DOOR), rate=50, planner="lazy")
             timed.motion.save(out)
             self.assertEqual(out.read_bytes(), motion.read_bytes())
-        for name in ("cost", "bound", "bound_any", "gap", "transition_counters", "joint_names"):
+        for name in (
+            "cost", "bound", "bound_any", "bound_orders", "gap", "transition_counters",
+            "joint_names"
+        ):
             self.assertEqual(getattr(plan, name), told[name], name)
         self.assertEqual(str(plan.status), told["status"])
         self.assertEqual(

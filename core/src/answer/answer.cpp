@@ -54,7 +54,7 @@ Answer answer_of(PlanResult result) {
   Answer answer;
   answer.status = result.status;
   answer.cost = result.cost;
-  answer.lattice_cost = answer.bound = answer.bound_any = result.lattice.cost;
+  answer.lattice_cost = answer.bound = answer.bound_any = answer.bound_orders = result.lattice.cost;
   answer.checked = result.checked;
   answer.planner = std::move(result.planner);
   answer.threads = result.threads;

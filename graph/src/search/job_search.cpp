@@ -473,7 +473,8 @@ class JobSearch {
     }
     outcome_.bound = std::min(value_, outcome_.cost);
     if (!raised_) outcome_.bound_any = outcome_.bound;
-    if (outcome_.cost <= value_ || value_ >= options_.most_cost) return false;
+    const double bound = options_.most_cost_of_any ? outcome_.bound_any : value_;
+    if (outcome_.cost <= value_ || bound >= options_.most_cost) return false;
     if (!lay_paths(begin, job)) return true;
     if (!validate_runs() || raise_noted()) return true;
     return !take_if_transitions_hold(job);

@@ -27,6 +27,7 @@ class StrokesWriter {
     json["cost"] = if_solved(result_.cost);
     json["bound"] = if_solved(result_.bound);
     json["bound_any"] = if_solved(result_.bound_any);
+    json["bound_orders"] = if_solved(result_.bound_orders);
     json["lattice_cost"] = if_solved(result_.lattice_cost);
     json["gap"] = gap();
     json["checked"] = solved_ ? Json(result_.checked) : Json(nullptr);

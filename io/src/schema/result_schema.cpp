@@ -633,6 +633,11 @@ std::vector<Schema::Key> job_answer_keys() {
       key("bound_any", or_null(number()),
           "no job of the lattices' nodes, in this order and with these lift-offs, has a smaller "
           "`lattice_cost`, whatever its directions and transitions; finer lattices may have one"),
+      key("bound_orders", or_null(number()),
+          "no job of the lattices' nodes, in any order that the problem allows and with these "
+          "lift-offs, has a smaller `lattice_cost`, if its transitions are those that Swivel "
+          "finds. "
+          "Of S-R-S arms it is of the knots that strokes have by themselves"),
       key("lattice_cost", or_null(number()),
           "as `cost`, but of the nodes of the lattices, which the search minimised; rows of arms "
           "that are not exactly S-R-S, and rows between knots, may cost a little more or less"),

@@ -7,13 +7,16 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
 #include "job/job_lift.hpp"
 #include "job/lift_offs/piece_planes.hpp"
 #include "job/lift_offs/plan_lift_offs.hpp"
+#include "job/order/order_bounds.hpp"
 #include "job/order/order_estimate.hpp"
 #include "job/transitions/job_transitions.hpp"
 #include "measure/measure_rows.hpp"
@@ -119,10 +122,35 @@ struct PlannedRun {
     Searched& last = found.finer ? *found.finer : first;
     knots = found.knots;
     lattice = std::move(last.lattice);
-    if (!last.cost_to_go) return;
-    cost_to_go = make_cost_to_go(*lattice, Pruning::kNone, budget);
-    cost_to_go->set_single_use();
-    take_verdicts(*last.cost_to_go, *cost_to_go);
+    if (last.cost_to_go) alone_verdicts = std::move(last.cost_to_go->verdicts());
+  }
+  /// Returns the cost-to-go of the run with what its plan alone found out about nodes and edges.
+  [[nodiscard]] std::unique_ptr<CostToGo> fresh_cost_to_go(const Budget& budget) const {
+    auto fresh = make_cost_to_go(*lattice, Pruning::kNone, budget);
+    fresh->set_single_use();
+    if (!alone_verdicts) return fresh;
+    std::vector<int> layers(static_cast<std::size_t>(lattice->layers()));
+    std::iota(layers.begin(), layers.end(), 0);
+    fresh->verdicts().take(*alone_verdicts, layers);
+    return fresh;
+  }
+
+  /// Makes the cost-to-go of the bounds of all orders.
+  void begin_bounds(const Budget& budget) {
+    of_bounds = make_cost_to_go(*lattice, Pruning::kNone, budget);
+    of_bounds->set_single_use();
+    if (alone_verdicts) remove_from_bounds(alone_verdicts->removals());
+  }
+  /// Removes nodes and edges from the bounds of all orders, but for edges of steps that can be
+  /// halved: a job in another order may have nodes between, and costs no less than by the edge.
+  void remove_from_bounds(const Verdicts::Removals& removals) const {
+    Verdicts& verdicts = of_bounds->verdicts();
+    for (const auto& [layer, slots] : removals.nodes) verdicts.remove_nodes(layer, slots);
+    for (const auto& [layer, edges] : removals.edges) {
+      if (lattice->can_halve(layer)) continue;
+      for (const auto& [a, b] : edges)
+        if (verdicts.edge(layer, a, b) != Verdict::kRemoved) of_bounds->remove_edge(layer, a, b);
+    }
   }
 
   StrokeRun run;
@@ -136,9 +164,15 @@ struct PlannedRun {
   std::optional<LatticeInfo::Knots> knots;
   /// What the search of the job says of the steps between knots.
   KnotSearch narrow;
-  /// The run's cost-to-go in the job that was searched last. What it knows of nodes and edges holds
-  /// in every job.
+  std::optional<Verdicts> alone_verdicts;  ///< of the search of its plan alone, by halve()
+  /// The run's cost-to-go in the job that was searched last. What that found out would change which
+  /// ways around obstacles the next one finds: each begins with what the plan alone found out, as
+  /// if it were the only one.
   std::unique_ptr<CostToGo> cost_to_go;
+  bool of_this_job = false;  ///< cost_to_go is that of the job that is being searched
+  /// The run's cost-to-go in the bounds of all orders, without what jobs in one order found out
+  /// until they hand it over; null where there are none.
+  std::unique_ptr<CostToGo> of_bounds;
   std::int64_t ik_nodes_before = 0, edges_before = 0;  // counts of cost_to_go before this search
   Counters alone_counters;                             // of halve(), until they are added
   Executor alone{1};
@@ -281,6 +315,15 @@ class JobPlan {
     return std::move(result_);
   }
 
+  /// Returns whether time ended the search before there was a proved job or a verdict.
+  [[nodiscard]] bool is_stopped() const { return stopped_; }
+  /// Removes from the bounds of all orders what was removed from the runs.
+  void hand_over_removals() const {
+    for (const auto& directions : directions_)
+      for (const auto& run : directions)
+        if (run->of_bounds && run->cost_to_go)
+          run->remove_from_bounds(run->cost_to_go->verdicts().removals());
+  }
   /// Returns the runs that were found to have no path by themselves.
   [[nodiscard]] const std::vector<StrokeRun>& runs_without_path() const { return without_path_; }
   /// Returns what plan() found out about the runs, valid while this and the robot live; empty if it
@@ -313,6 +356,7 @@ class JobPlan {
       for (const bool reversed : {false, true})
         if (!reversed || job_.arm().strokes[stroke].reversible) all.push_back({stroke, reversed});
     for (auto& run : shared_->in_order(all, executor_)) {
+      run->of_this_job = false;
       if (!run->run.reversed) directions_.emplace_back();
       directions_.back().push_back(std::move(run));
     }
@@ -517,12 +561,11 @@ class JobPlan {
   JobOutcome search_once(JobTransitions& transitions, const Budget& budget) {
     std::vector<SearchedStroke> searched(directions_.size());
     for_each_direction([&](const std::shared_ptr<PlannedRun>& run) {
-      if (run->cost_to_go) {
+      if (run->cost_to_go && run->of_this_job)
         run->cost_to_go->verdicts().forget_exit_costs();
-      } else {
-        run->cost_to_go = make_cost_to_go(*run->lattice, Pruning::kNone, budget);
-        run->cost_to_go->set_single_use();
-      }
+      else
+        run->cost_to_go = run->fresh_cost_to_go(budget);
+      run->of_this_job = true;
       run->narrow = {};
       run->ik_nodes_before = run->cost_to_go->ik_nodes();
       run->edges_before = run->cost_to_go->edges();
@@ -539,6 +582,7 @@ class JobPlan {
     options.paths.batch = 8;
     options.work = work();
     options.most_cost = most_cost_;
+    options.most_cost_of_any = may_be_halved();
     JobOutcome outcome = search_job(searched, transitions, job_.arm().home, options);
     for_each_direction([&](const std::shared_ptr<PlannedRun>& run) { add_counters(*run); });
     return outcome;
@@ -553,6 +597,14 @@ class JobPlan {
       run.narrow.narrow.insert(steps.begin(), steps.end());
       any = any || !steps.empty();
     }
+    return any;
+  }
+  /// Returns whether a lattice may have more knots in a later search of this job, which then may
+  /// find cheaper ways around obstacles, too.
+  [[nodiscard]] bool may_be_halved() {
+    bool any = false;
+    for_each_direction(
+        [&](const std::shared_ptr<PlannedRun>& run) { any = any || can_halve(*run->lattice); });
     return any;
   }
   /// Returns the cost of the job's rows as far as turns of joints are told apart; kUnreachable
@@ -582,9 +634,9 @@ class JobPlan {
       if (run->narrow.narrow.empty()) return;
       const std::shared_ptr<PlannedRun> before = std::exchange(
           run, shared_->with_lattice(*run, run->lattice->with_knots(run->narrow.narrow, budget)));
-      run->cost_to_go = make_cost_to_go(*run->lattice, Pruning::kNone, budget);
-      run->cost_to_go->set_single_use();
+      run->cost_to_go = run->fresh_cost_to_go(budget);
       take_verdicts(*before->cost_to_go, *run->cost_to_go);
+      run->of_this_job = true;
     });
   }
 
@@ -609,6 +661,9 @@ class JobPlan {
     swivel::add_counters(transitions.counters(), result_.arm().counters);
     result_.bound = outcome.bound;
     result_.bound_any = outcome.bound_any;
+    result_.bound_orders = 0;
+    for (const std::vector<double>& costs : outcome.least_costs)
+      result_.bound_orders += *std::min_element(costs.begin(), costs.end());
     result_.cost = result_.lattice_cost = outcome.paths.empty() ? 0 : outcome.cost;
     result_.arm().runs.clear();
     for (std::size_t k = 0; k < runs_.size(); ++k) {
@@ -781,8 +836,11 @@ std::vector<std::size_t> strokes_of(const std::vector<StrokeRun>& order) {
   return strokes;
 }
 
-/// Plans a job in its given order, or in the cheapest that is found: the cheapest one by estimate,
-/// and then orders that differ from the best so far by one move, the cheapest by estimate first.
+/// Plans a job in its given order, or in the cheapest that is found. Of a few strokes all orders
+/// are bounded, and those planned whose bound is less than the cost of the best job, the least
+/// bound first, so that none can be cheaper at the end. Of more strokes the cheapest order by
+/// estimate is planned, then orders that differ from the best so far by one move, the cheapest by
+/// estimate first, and all of these from the last stroke to the first.
 class OrderSearch {
  public:
   /// Keeps the plan of the best job for `view`, unless that is null.
@@ -794,37 +852,139 @@ class OrderSearch {
         budget_(budget),
         one_branch_(one_branch),
         view_(view),
+        executor_(threads_for(options)),
         runs_(std::make_shared<JobRuns>(robot, job, options, budget)) {}
 
   Answer plan() {
-    double order_ms = 0;
-    if (job_.arm().order == StrokeOrder::kBest) {
+    Stopwatch watch;
+    const bool any_order = job_.arm().order == StrokeOrder::kBest;
+    if (any_order) {
       try {
-        Stopwatch watch;
-        estimate();
-        const std::vector<StrokeRun> order = cheapest_order(costs_, budget_);
-        order_ms = watch.lap();
-        take(order);
-        improve();
-      } catch (const Stopped&) {  // the given order is left
+        if (job_.arm().strokes.size() <= kMostBounded) {
+          search_all();
+        } else {
+          estimate();
+          take(cheapest_order(costs_, budget_));
+          improve();
+        }
+      } catch (const Stopped&) {  // the best job so far is the answer, or else the given order
       }
     }
     if (!best_ || best_cost_ == kUnreachable) take(given_order(job_));
+    const double searched_ms = watch.lap();
     Answer found = best_->finish();
     found.arm().counters = counters_;
     found.arm().transitions = transitions_;
-    if (job_.arm().order == StrokeOrder::kBest) found.time_ms["order"] = order_ms;
+    found.bound_orders = any_order ? bound_of_orders(found) : found.bound;
+    if (any_order) {  // besides the stages of the best job
+      double& order_ms = found.time_ms["order"] = searched_ms;
+      for (const auto& [stage, ms] : found.time_ms)
+        if (stage != "order" && stage != "report") order_ms = std::max(0.0, order_ms - ms);
+    }
     if (view_ != nullptr) view_->runs = best_->views(), view_->owner = best_;
     return found;
   }
 
  private:
-  void estimate() {
-    Executor executor(threads_for(options_));
-    const ParallelFor work{executor.threads(),
-                           [&](int parts, const auto& body) { executor.for_each(parts, body); }};
-    costs_ = estimate_order_costs(robot_, job_, work, budget_);
+  /// Most strokes of jobs whose orders are all bounded, and of those of which all orders are
+  /// planned that may be cheaper: there are no more than kMostOrders.
+  static constexpr std::size_t kMostBounded = 12, kMostExact = 5;
+  /// Most orders that are planned of so few strokes, of more strokes, and while none has a job.
+  static constexpr std::size_t kMostOrders = 120, kMostOrdersOfMany = 20, kMostWithoutJob = 8;
+  /// So many orders that may be cheaper are planned before bounds are made anew.
+  static constexpr std::size_t kAtOnce = 4;
+
+  [[nodiscard]] ParallelFor work() {
+    return {executor_.threads(),
+            [this](int parts, const auto& body) { executor_.for_each(parts, body); }};
   }
+  void estimate() { costs_ = estimate_order_costs(robot_, job_, work(), budget_); }
+
+  /// Returns a lower bound of jobs in all orders. Before there is one of the orders that were not
+  /// planned, it is what the strokes cost by themselves.
+  [[nodiscard]] double bound_of_orders(const Answer& found) const {
+    return std::min({std::max(found.bound_orders, bound_), bound_of_planned_, found.lattice_cost});
+  }
+  /// Plans orders until none that is left can be cheaper than the best job, or many were planned.
+  void search_all() {
+    OrderBounds bounds = bounds_of_orders();
+    const std::size_t most =
+        job_.arm().strokes.size() <= kMostExact ? kMostOrders : kMostOrdersOfMany;
+    for (bool divides = true;;) {
+      const OrderProgram program(bounds.graph(), budget_);
+      const std::vector<std::vector<StrokeRun>> open = open_orders(program);
+      if (open.empty() || planned_.size() >= most) break;
+      const bool many = open.size() > kAtOnce;
+      for (std::size_t k = 0; k < (many && divides ? 1 : kAtOnce); ++k) {
+        const auto next = next_of(open);
+        if (!next) break;
+        take(*next);
+        if (last_->is_stopped()) throw Stopped();  // bound_ is of this order, too
+        last_->hand_over_removals();
+      }
+      if (best_cost_ == kUnreachable && (no_way_.empty() || planned_.size() >= kMostWithoutJob))
+        return;
+      divides = many && best_cost_ != kUnreachable && bounds.divide(program.uses(), best_cost_);
+      if (!divides) bounds.take_removals();
+    }
+    if (bound_ < best_cost_ && !was_planned(given_order(job_))) take(given_order(job_));
+  }
+  [[nodiscard]] OrderBounds bounds_of_orders() {
+    const std::vector<Stroke>& strokes = job_.arm().strokes;
+    std::vector<StrokeRun> all;
+    for (std::size_t k = 0; k < strokes.size(); ++k)
+      for (const bool reversed : {false, true})
+        if (!reversed || strokes[k].reversible) all.push_back({k, reversed});
+    std::vector<CostToGo*> values(2 * strokes.size());
+    const auto runs = runs_->in_order(all, executor_);
+    for (const auto& run : runs) {
+      run->begin_bounds(budget_);
+      values[2 * run->run.stroke + (run->run.reversed ? 1 : 0)] = run->of_bounds.get();
+    }
+    budget_.tell(Stage::kSearch);
+    // Joints that are circles in all runs are circles of the first.
+    return OrderBounds(values, job_.arm().home, *runs.front()->lattice, work(), budget_);
+  }
+  /// Returns orders whose bound is less than the cost of the best job and that were not planned,
+  /// the cheapest first, and takes the least bound of all of these.
+  [[nodiscard]] std::vector<std::vector<StrokeRun>> open_orders(const OrderProgram& program) {
+    constexpr std::size_t kMostListed = 50;
+    std::vector<std::vector<StrokeRun>> open;
+    double bound = best_cost_;
+    for (const BoundedOrder& order :
+         program.cheaper_than(best_cost_, kMostListed + planned_.size())) {
+      std::vector<StrokeRun> runs;
+      for (const std::size_t stroke : order.strokes) runs.push_back({stroke, false});
+      if (was_planned(runs)) continue;
+      bound = std::min(bound, order.cost);
+      open.push_back(std::move(runs));
+    }
+    bound_ = bound;
+    return open;
+  }
+  /// Returns the first order that was not planned, as long as no job is known the first without
+  /// neighbours between which no transition was found, if there is one.
+  [[nodiscard]] std::optional<std::vector<StrokeRun>> next_of(
+      const std::vector<std::vector<StrokeRun>>& open) const {
+    const std::vector<StrokeRun>* first = nullptr;
+    for (const std::vector<StrokeRun>& order : open) {
+      if (was_planned(order)) continue;
+      if (first == nullptr) first = &order;
+      if (best_cost_ != kUnreachable) break;
+      bool any = false;
+      for (std::size_t k = 0; k <= order.size(); ++k)
+        any = any || no_way_.contains(neighbours(order, k));
+      if (!any) return order;
+    }
+    return first == nullptr ? std::nullopt : std::optional(*first);
+  }
+  /// Returns the strokes before and after a transition of an order; the number of strokes: home.
+  [[nodiscard]] static std::pair<std::size_t, std::size_t> neighbours(
+      const std::vector<StrokeRun>& order, std::size_t transition) {
+    return {transition > 0 ? order[transition - 1].stroke : order.size(),
+            transition < order.size() ? order[transition].stroke : order.size()};
+  }
+
   /// Plans in an order of strokes and keeps the job if it is the cheapest so far. Estimates, if
   /// there are some, then know which runs have no path by themselves.
   void take(const std::vector<StrokeRun>& order) {
@@ -832,6 +992,11 @@ class OrderSearch {
                                                 strokes_of(order), one_branch_);
     const Answer& found = plan->search(best_cost_);
     add(found);
+    last_ = plan;
+    if (const auto& none = found.arm().no_transition;
+        none && none->where != NoTransition::Where::kHome)
+      no_way_.insert(neighbours(order, none->to));
+    if (found.has_rows()) bound_of_planned_ = std::min(bound_of_planned_, found.bound);
     if (!best_ || (!found.arm().parts.empty() && found.lattice_cost < best_cost_)) {
       best_ = plan;
       best_order_ = order;
@@ -847,13 +1012,22 @@ class OrderSearch {
   /// Plans the given order and orders that differ by one move from the best one, as many as are
   /// likely to find a cheaper job: estimates, which know no obstacles, are off by some per cent.
   void improve() {
-    constexpr int kMostOrders = 16;
+    constexpr int kMostNeighbours = 16;
     if (best_cost_ == kUnreachable) return;
-    if (!was_planned(given_order(job_))) take(given_order(job_));
-    for (int k = 0; k < kMostOrders; ++k) {
+    take_both_ways(planned_.front());
+    take_both_ways(given_order(job_));
+    for (int k = 0; k < kMostNeighbours; ++k) {
       const auto next = cheapest_neighbour(costs_, best_order_, planned_, budget_);
       if (!next) return;
-      take(*next);
+      take_both_ways(*next);
+    }
+  }
+  /// Plans in an order, and in that from its last stroke to its first, as far as that was not done.
+  void take_both_ways(std::vector<StrokeRun> order) {
+    for (int way = 0; way < 2; ++way) {
+      if (!was_planned(order)) take(order);
+      std::reverse(order.begin(), order.end());
+      for (StrokeRun& run : order) run.reversed = !run.reversed;
     }
   }
   /// Adds what one search did to what all did.
@@ -881,11 +1055,15 @@ class OrderSearch {
   const Budget& budget_;
   bool one_branch_;
   ProblemView* view_;
+  Executor executor_;
   std::shared_ptr<JobRuns> runs_;
   OrderCosts costs_;
-  std::shared_ptr<JobPlan> best_;
+  std::shared_ptr<JobPlan> best_, last_;
   std::vector<StrokeRun> best_order_;
   double best_cost_ = kUnreachable;
+  double bound_ = 0;                                      // of orders that were not planned
+  std::set<std::pair<std::size_t, std::size_t>> no_way_;  // neighbours() without a transition
+  double bound_of_planned_ = kUnreachable;
   std::vector<std::vector<StrokeRun>> planned_;  // orders, all so far
   Counters counters_;                            // of all searches, like the next
   TransitionCounters transitions_;

@@ -252,7 +252,7 @@ class WorkcellPlan {
 
   void note(const PairOutcome& outcome, BetweenArms& between) {
     result_.cost = result_.lattice_cost = outcome.paths[0].empty() ? 0 : outcome.cost;
-    result_.bound = result_.bound_any = outcome.bound;
+    result_.bound = result_.bound_any = result_.bound_orders = outcome.bound;
     PairAnswer& pair = result_.pair;
     pair.decided_by = static_cast<PairSearch>(outcome.decided_by);
     pair.counters.rounds += outcome.rounds;

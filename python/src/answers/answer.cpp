@@ -311,6 +311,10 @@ void bind_verdict(py::class_<Answer>& type) {
           "No answer of the lattices' nodes in this order of strokes costs less, whatever its "
           "transitions.")
       .def_property_readonly(
+          "bound_orders", [](const Answer& x) { return if_rows(x, x.found->bound_orders); },
+          "No answer of the lattices' nodes in any order that the problem allows costs less, whose "
+          "transitions are those that are found.")
+      .def_property_readonly(
           "gap", [](const Answer& x) { return gap_of(*x.found); },
           "What the search minimised over bound, less 1: 0 where the answer is optimal. None where "
           "there is no bound.")

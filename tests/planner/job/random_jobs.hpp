@@ -54,6 +54,7 @@ inline void expect_same(const Answer& a, const Answer& b, const std::string& wha
   ASSERT_EQ(a.status, b.status) << what;
   ASSERT_EQ(a.cost, b.cost) << what;
   ASSERT_EQ(a.bound, b.bound) << what;
+  ASSERT_EQ(a.bound_orders, b.bound_orders) << what;
   ASSERT_EQ(a.arm().parts.size(), b.arm().parts.size()) << what;
   ASSERT_EQ(a.arm().counters.fcl_calls, b.arm().counters.fcl_calls) << what;
   ASSERT_EQ(a.arm().transitions.pairs, b.arm().transitions.pairs) << what;

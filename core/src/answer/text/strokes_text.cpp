@@ -48,13 +48,20 @@ std::string less_than(double cost, double bound) {
 /// Returns how near a job's cost is to the least.
 std::string bounds_text(const Answer& result, const Problem& job) {
   const bool other_orders = job.arm().order == StrokeOrder::kBest && job.arm().strokes.size() > 1;
-  const std::string none =
-      std::string("none costs less at this resolution") + (other_orders ? " in this order" : "");
-  if (result.lattice_cost <= result.bound_any) return none + ", whatever the transitions";
+  const std::string in_order = other_orders ? " in this order" : "";
+  const std::string of_orders =
+      !other_orders                                ? ""
+      : result.lattice_cost <= result.bound_orders ? "; no order is cheaper"
+      : result.bound_orders <= 0                   ? "; other orders may be cheaper"
+                                 : formatted("; at most %.3g %% can be gained by another order",
+                                             100 * (1 - result.bound_orders / result.lattice_cost));
+  const std::string none = "none costs less at this resolution" + in_order;
+  if (result.lattice_cost <= result.bound_any)
+    return none + ", whatever the transitions" + of_orders;
   const std::string any =
-      "whatever the transitions, " + less_than(result.lattice_cost, result.bound_any);
+      "whatever the transitions, " + less_than(result.lattice_cost, result.bound_any) + of_orders;
   if (result.lattice_cost <= result.bound) return none + " with the transitions found; " + any;
-  return "with the transitions found" + std::string(other_orders ? " in this order" : "") + ", " +
+  return "with the transitions found" + in_order + ", " +
          less_than(result.lattice_cost, result.bound) + "; " + any;
 }
 

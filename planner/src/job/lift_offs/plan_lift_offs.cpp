@@ -226,6 +226,7 @@ class LiftPlan {
     found.lattice_cost += cost;
     found.bound += cost;
     found.bound_any += cost;
+    found.bound_orders += cost;
     found.arm().counters = first.arm().counters;
     add_counters(counters_, found.arm().counters);
     if (const auto lift = first.time_ms.find("lift"); lift != first.time_ms.end())

@@ -2,7 +2,6 @@
 #include "job/order/stroke_order.hpp"
 
 #include <algorithm>
-#include <cstdint>
 #include <limits>
 
 namespace swivel {
@@ -10,7 +9,6 @@ namespace swivel {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
-constexpr std::size_t kMostExact = 12;   // strokes
 constexpr std::size_t kMostLocal = 120;  // strokes whose order is improved by local search
 
 using Runs = std::vector<std::size_t>;  // 2 * stroke + reversed
@@ -32,51 +30,6 @@ double cost_of(const OrderCosts& costs, const Runs& runs) {
   double cost = costs.first[runs.front()] + costs.last[runs.back()];
   for (std::size_t k = 1; k < runs.size(); ++k) cost += costs.follow[runs[k - 1]][runs[k]];
   return cost;
-}
-
-/// Finds the cheapest order by Held and Karp: least[set][run] is the least cost of running the
-/// strokes of `set`, `run` of them last.
-Runs exact_order(const OrderCosts& costs, const Budget& budget) {
-  const std::size_t n = costs.strokes, runs = 2 * n, sets = std::size_t{1} << n;
-  struct Best {
-    double cost = kNone;
-    std::uint8_t before = 0;
-  };
-  budget.tell(Stage::kSearch);
-  std::vector<Best> least(sets * runs);
-  for (std::size_t run = 0; run < runs; ++run)
-    least[(std::size_t{1} << run / 2) * runs + run].cost = costs.first[run];
-  for (std::size_t set = 1; set < sets; ++set) {
-    if (set % 64 == 0) budget.poll();
-    for (std::size_t run = 0; run < runs; ++run) {
-      const double cost = least[set * runs + run].cost;
-      if (cost == kNone) continue;
-      for (std::size_t next = 0; next < runs; ++next) {
-        const std::size_t bit = std::size_t{1} << next / 2;
-        if (set & bit) continue;
-        Best& best = least[(set | bit) * runs + next];
-        if (cost + costs.follow[run][next] < best.cost)
-          best = {cost + costs.follow[run][next], static_cast<std::uint8_t>(run)};
-      }
-    }
-  }
-  std::size_t set = sets - 1, last = 0;
-  double cost = kNone;
-  for (std::size_t run = 0; run < runs; ++run)
-    if (least[set * runs + run].cost + costs.last[run] < cost)
-      cost = least[set * runs + run].cost + costs.last[run], last = run;
-  Runs order;
-  if (cost == kNone) {  // no order has a cost: the given one
-    for (std::size_t k = 0; k < n; ++k) order.push_back(2 * k);
-    return order;
-  }
-  while (set != 0) {
-    order.insert(order.begin(), last);
-    const std::size_t before = least[set * runs + last].before;
-    set &= ~(std::size_t{1} << last / 2);
-    last = before;
-  }
-  return order;
 }
 
 /// Returns the order that takes the cheapest run next, from a first run on.
@@ -149,6 +102,7 @@ bool improve(const OrderCosts& costs, Runs& order, double& cost) {
 }
 
 Runs searched_order(const OrderCosts& costs, const Budget& budget) {
+  budget.tell(Stage::kSearch);
   Runs best;
   double least = kNone;
   const std::size_t runs = 2 * costs.strokes;
@@ -193,8 +147,7 @@ std::optional<std::vector<StrokeRun>> cheapest_neighbour(
 }
 
 std::vector<StrokeRun> cheapest_order(const OrderCosts& costs, const Budget& budget) {
-  return as_order(costs.strokes <= kMostExact ? exact_order(costs, budget)
-                                              : searched_order(costs, budget));
+  return as_order(searched_order(costs, budget));
 }
 
 }  // namespace swivel

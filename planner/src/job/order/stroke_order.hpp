@@ -21,10 +21,9 @@ struct OrderCosts {
 /// Returns what an order costs.
 [[nodiscard]] double cost_of_order(const OrderCosts& costs, const std::vector<StrokeRun>& order);
 
-/// Returns the cheapest order in which each stroke is run once: for up to twelve strokes the exact
-/// one, by the dynamic program over sets of strokes of Held and Karp (1962), beyond that the best
-/// of local searches from some first runs, fewer the more strokes there are, which move stretches
-/// of up to three strokes and turn stretches around (Or-opt, 2-opt). Deterministic. Throws Stopped.
+/// Returns an order in which each stroke is run once: the cheapest of local searches from some
+/// first runs, fewer the more strokes there are, which move stretches of up to three strokes and
+/// turn stretches around (Or-opt, 2-opt). Deterministic. Throws Stopped.
 [[nodiscard]] std::vector<StrokeRun> cheapest_order(const OrderCosts& costs, const Budget& budget);
 
 /// Returns the cheapest order that differs from `order` by one move: a stretch of strokes turned

@@ -150,6 +150,11 @@ struct Answer {
   /// No answer of the lattices' nodes in this order of strokes has a smaller lattice_cost, whatever
   /// its transitions. Both bounds are of answers with the same lift-offs.
   double bound_any = 0;
+  /// No answer of the lattices' nodes in any order of strokes that the problem allows has a smaller
+  /// lattice_cost, if its transitions are those that the planner finds. Of a problem that gives the
+  /// order it is `bound`. Of S-R-S arms it is of the knots that strokes have by themselves: steps
+  /// halved for a job in one order may make a branch near, and cheap, that they had not.
+  double bound_orders = 0;
   bool checked = false;  ///< the parts were verified by check_job() or check_workcell()
   bool refined = false;  ///< the rows are refined ones
   /// What refining brought, where it was asked for and there are rows. Then cost, rows and measures

@@ -75,6 +75,9 @@ struct JobSearchOptions {
   /// Jobs that cost so much or more are of no interest: the search ends once none that is cheaper
   /// can be left.
   double most_cost = kUnreachable;
+  /// Whether that is judged by what jobs cost whatever their transitions: a later search by the
+  /// same Transitions may find cheaper ones.
+  bool most_cost_of_any = false;
   ParallelFor work;  ///< shares runs among threads; the result is the same
 };
 
