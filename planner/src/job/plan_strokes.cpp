@@ -168,7 +168,7 @@ struct PlannedRun {
   /// The run's cost-to-go in the job that was searched last. What that found out would change which
   /// ways around obstacles the next one finds: each begins with what the plan alone found out, as
   /// if it were the only one.
-  std::unique_ptr<CostToGo> cost_to_go;
+  std::shared_ptr<CostToGo> cost_to_go;
   bool of_this_job = false;  ///< cost_to_go is that of the job that is being searched
   /// The run's cost-to-go in the bounds of all orders, without what jobs in one order found out
   /// until they hand it over; null where there are none.
@@ -336,7 +336,7 @@ class JobPlan {
       if (run.alone_plan)
         views.push_back(run.alone_plan->view());
       else
-        views.push_back({robot_, run.problem, *run.lattice, *run.world, &run.cost_to_go->verdicts(),
+        views.push_back({robot_, run.problem, *run.lattice, *run.world, &searched_[k]->verdicts(),
                          paths_[k], run.problem.resolution});
     }
     return views;
@@ -406,6 +406,8 @@ class JobPlan {
       note(outcome, transitions);
       paths_ = outcome.paths;
       paths_.resize(runs_.size());
+      searched_.clear();
+      for (const auto& run : runs_) searched_.push_back(run->cost_to_go);
       if (outcome.paths.empty()) {
         if (!turns.empty()) result_.warnings.push_back(turns);
         return;
@@ -821,6 +823,8 @@ class JobPlan {
   std::vector<std::shared_ptr<PlannedRun>> runs_;                     // the directions taken
   std::vector<StrokeRun> without_path_;
   std::vector<SlotPath> paths_;  // of the runs, empty where there is no job
+  std::vector<std::shared_ptr<CostToGo>>
+      searched_;  // of the runs; jobs in other orders have others
   Answer result_;
 };
 
