@@ -82,7 +82,6 @@ BasinLattice::Point BasinLattice::solved_point(int layer, int point) const {
 void BasinLattice::price(std::size_t stride, int layer) {
   const int over = kStrides[stride];
   costs_[stride][at(layer)].assign(at(kCells) * at(2 * width(stride) + 1), kNever);
-  const Config scale = Config::of(lattice_->cost_scale().data());
   for_edges(stride, layer, [&](const Edge& e) {
     double sum = 0;
     for (int j = 0; j < over; ++j) {
@@ -92,10 +91,7 @@ void BasinLattice::price(std::size_t stride, int layer) {
       if (p.state == State::kBad || q.state == State::kBad ||
           std::abs(coordinate(from + 1, b) - coordinate(from, a)) > redundancy_->most_change())
         return;
-      const Config move = scale.cwiseProduct(q.q - p.q);
-      sum += lattice_->cost().metric == CostMetric::kL2   ? joint_norm(move)
-             : lattice_->cost().metric == CostMetric::kL1 ? move.lpNorm<1>()
-                                                          : move.lpNorm<Eigen::Infinity>();
+      sum += lattice_->edge_cost(q.q - p.q);
     }
     cost(e) = static_cast<float>(sum);
   });

@@ -101,14 +101,14 @@ class Objective {
       const std::size_t a = at(i), b = at(i + 1);
       const Norm n = norm(scale_.cwiseProduct(l.q[b] - l.q[a]));
       const Config ja = scale_.cwiseProduct(l.first[a]), jb = scale_.cwiseProduct(l.first[b]);
-      const double wa = joint_dot(n.way, ja), wb = joint_dot(n.way, jb), bent = n.bent;
+      const double wa = joint_dot(n.way, ja), wb = joint_dot(n.way, jb);
       g[a] -= wa;
       g[b] += wb;
-      H[0][a] += bent * (joint_dot(ja.cwiseProduct(n.spread), ja) - n.coupled * wa * wa) -
+      H[0][a] += n.bent * (joint_dot(ja.cwiseProduct(n.spread), ja) - n.coupled * wa * wa) -
                  joint_dot(n.way, scale_.cwiseProduct(l.second[a]));
-      H[0][b] += bent * (joint_dot(jb.cwiseProduct(n.spread), jb) - n.coupled * wb * wb) +
+      H[0][b] += n.bent * (joint_dot(jb.cwiseProduct(n.spread), jb) - n.coupled * wb * wb) +
                  joint_dot(n.way, scale_.cwiseProduct(l.second[b]));
-      H[1][a] -= bent * (joint_dot(ja.cwiseProduct(n.spread), jb) - n.coupled * wa * wb);
+      H[1][a] -= n.bent * (joint_dot(ja.cwiseProduct(n.spread), jb) - n.coupled * wa * wb);
       const double change = x[b] - x[a], over = std::abs(change) - objective_->most_change;
       if (over <= 0) continue;
       const double pull = 2 * kChange * std::copysign(over, change);

@@ -2,8 +2,7 @@
 #include "swivel/graph/search/cut_program.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
+#include <iterator>
 #include <set>
 #include <utility>
 
@@ -70,30 +69,11 @@ class CutProgram::FreeMoves {
   void set_rest(std::vector<double> rest) { rest_ = std::move(rest); }
   /// Lowers the cost of each end to that of its best move and of going on, where that is less.
   void lower(std::vector<double>& costs) const {
-    if (ends_.empty() || begins_.empty()) return;
-    constexpr double kAny = 1e9;  // rad: no bound
     RelaxTask<double> task = relax_task(*lattice_, 0);
+    std::fill(std::begin(task.bound), std::end(task.bound), 1e9);  // rad: none
     if (lattice_->chain().roll) task.scale[kDof - 1] = 0;
-    task.n = static_cast<int>(ends_.size());
-    task.offsets = static_cast<int>(begins_.size());
-    for (std::size_t j = 0; j < kDof; ++j) {
-      task.from[j] = from_[j].data();
-      task.to[j] = to_[j].data();
-      task.block_middle[j] = blocks_.middle[j].data();
-      task.block_radius[j] = blocks_.radius[j].data();
-      task.bound[j] = kAny;
-    }
-    constexpr std::size_t kBlock = RelaxTask<double>::kBlock;
-    std::vector<double> least;  // of blocks
-    for (auto first = rest_.begin(); first != rest_.end();) {
-      const auto last = first + std::min<std::ptrdiff_t>(kBlock, rest_.end() - first);
-      least.push_back(*std::min_element(first, last));
-      first = last;
-    }
-    task.block_value = least.data();
-    task.value = rest_.data();
-    task.best = costs.data();
-    relax_kernels().relax_all(task);
+    std::vector<double> least_of_blocks;
+    relax_all_pairs(task, from_, to_, &blocks_, rest_, least_of_blocks, costs);
   }
   struct Move {
     std::size_t begin = 0;
@@ -116,9 +96,8 @@ class CutProgram::FreeMoves {
   [[nodiscard]] const std::vector<Config>& begins() const { return begins_; }
 
  private:
-  using Joints = std::array<std::vector<double>, kDof>;
-  static Joints by_joint(const std::vector<Config>& configurations) {
-    Joints joints;
+  static NodeJoints by_joint(const std::vector<Config>& configurations) {
+    NodeJoints joints;
     for (std::size_t j = 0; j < kDof; ++j)
       for (const Config& q : configurations) joints[j].push_back(q[static_cast<Eigen::Index>(j)]);
     return joints;
@@ -126,7 +105,7 @@ class CutProgram::FreeMoves {
 
   const Lattice* lattice_;
   std::vector<Config> ends_, begins_;
-  Joints from_, to_;
+  NodeJoints from_, to_;
   RelaxBlocks blocks_;
   std::vector<double> rest_;
 };

@@ -15,6 +15,7 @@
 #include "swivel/planner/robot/motion_defaults.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "verify/check_rates.hpp"
+#include "verify/move_cost.hpp"
 
 namespace swivel {
 
@@ -219,24 +220,11 @@ class JobCheck {
   }
   /// Returns what the moves of a transition cost. The roll of a six-joint arm costs nothing.
   [[nodiscard]] double cost_of(const std::vector<TrajectoryRow>& rows) const {
-    const Cost& cost = job_.arm().strokes.front().cost;
-    const std::array<double, kDof> weights = joint_weights(cost, chain_);
     double sum = 0;
     for (std::size_t i = 1; i < rows.size(); ++i) {
-      double squares = 0, sum_of_moves = 0, most = 0;
-      for (std::size_t j = 0; j < kDof; ++j) {
-        if (chain_.roll && j + 1 == kDof) continue;
-        const auto x = static_cast<Eigen::Index>(j);
-        const double scale =
-            cost.metric == CostMetric::kTime ? 1 / chain_.limit[j].velocity : weights[j];
-        const double scaled = scale * (rows[i].q[x] - rows[i - 1].q[x]);
-        squares += scaled * scaled;
-        sum_of_moves += std::abs(scaled);
-        most = std::max(most, std::abs(scaled));
-      }
-      sum += cost.metric == CostMetric::kL2   ? std::sqrt(squares)
-             : cost.metric == CostMetric::kL1 ? sum_of_moves
-                                              : most;
+      Config move = rows[i].q - rows[i - 1].q;
+      if (chain_.roll) move[kDof - 1] = 0;
+      sum += move_cost(job_.arm().strokes.front().cost, chain_, move);
     }
     return sum;
   }

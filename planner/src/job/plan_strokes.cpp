@@ -77,14 +77,7 @@ struct PlannedRun {
   void make_nodes(const Stroke& stroke, const PreparedRobot& robot, const Budget& budget) {
     std::vector<ArmPlane> planes = planes_of_piece(stroke, problem, robot, path, budget);
     other_planes = !planes.empty();
-    if (planes.empty()) {
-      lattice = make_lattice(robot.arm().chain, robot.arm_class(), path, problem, budget);
-      return;
-    }
-    const SrsArm& arm = *robot.arm_class().srs;
-    lattice = std::make_unique<SrsLattice>(
-        robot.arm().chain, arm, path, problem, budget, std::move(planes), std::nullopt,
-        SrsLattice::possible_circles(robot.arm().chain, arm, path, problem));
+    lattice = make_piece_lattice(robot, path, problem, std::move(planes), budget);
   }
   /// Makes what answers questions about a lattice of the run.
   void ask_about(const Lattice& asked, const PlanOptions& options, const Hooks& hooks,
@@ -823,8 +816,8 @@ class JobPlan {
   std::vector<std::shared_ptr<PlannedRun>> runs_;                     // the directions taken
   std::vector<StrokeRun> without_path_;
   std::vector<SlotPath> paths_;  // of the runs, empty where there is no job
-  std::vector<std::shared_ptr<CostToGo>>
-      searched_;  // of the runs; jobs in other orders have others
+  // what the runs had in this job; in jobs of other orders they get others
+  std::vector<std::shared_ptr<CostToGo>> searched_;
   Answer result_;
 };
 
@@ -1026,7 +1019,8 @@ class OrderSearch {
       take_both_ways(*next);
     }
   }
-  /// Plans in an order, and in that from its last stroke to its first, as far as that was not done.
+  /// Plans the job in an order of its strokes and in the reversed order, if these were not planned
+  /// yet.
   void take_both_ways(std::vector<StrokeRun> order) {
     for (int way = 0; way < 2; ++way) {
       if (!was_planned(order)) take(order);

@@ -26,6 +26,7 @@
 #include "verify/between_samples.hpp"
 #include "verify/check_rates.hpp"
 #include "verify/given_ends.hpp"
+#include "verify/move_cost.hpp"
 #include "verify/path_following.hpp"
 #include "verify/places_on_path.hpp"
 
@@ -198,7 +199,7 @@ class Check {
     choose_places();
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       if (k > 0 && rows_[k].q.allFinite() && rows_[k - 1].q.allFinite())
-        result_.cost += cost_of(rows_[k].q - rows_[k - 1].q);
+        result_.cost += move_cost(problem_.cost, chain_, rows_[k].q - rows_[k - 1].q);
       if (!examined(k)) continue;
       options_.budget.poll();
       examine_row(k);
@@ -788,23 +789,6 @@ class Check {
         if (at - allowed(first) < least) least = at - allowed(first), since = k;
       }
     }
-  }
-
-  [[nodiscard]] double cost_of(const Config& move) const {
-    const std::array<double, kDof> weights = joint_weights(problem_.cost, chain_);
-    double squares = 0, sum = 0, most = 0;
-    for (std::size_t j = 0; j < kDof; ++j) {
-      const double dq = move[static_cast<Eigen::Index>(j)];
-      const double scaled = problem_.cost.metric != CostMetric::kTime ? weights[j] * dq
-                            : chain_.roll && j + 1 == kDof            ? 0
-                                                           : dq / chain_.limit[j].velocity;
-      squares += scaled * scaled;
-      sum += std::abs(scaled);
-      most = std::max(most, std::abs(scaled));
-    }
-    return problem_.cost.metric == CostMetric::kL2   ? std::sqrt(squares)
-           : problem_.cost.metric == CostMetric::kL1 ? sum
-                                                     : most;
   }
 
   /// Returns the cost of the rolls: each row's, weighted with half of the path to the rows before

@@ -160,7 +160,8 @@ TEST(BestOrder, BoundsAllOrdersWhereTimeRunsOut) {
   EXPECT_GE(answers, at_least(10));
 }
 
-/// Of many strokes the bound of all orders holds for the given one, and for each reversed.
+/// Jobs of 9 and of 13 strokes in the best order cost no more than in the given order and in its
+/// reverse, and no less than the bound of all orders.
 TEST(BestOrder, OfManyStrokesIsNoDearerThanTheGivenOrderEitherWay) {
   Random random(seed("BestOrder many"));
   const JobCase of("iiwa14_bench_job.yaml");

@@ -43,13 +43,14 @@ inline RelaxTask<double> relax_task(const Lattice& lattice, int step) {
   return task;
 }
 
+/// Joints of nodes, rad, [joint][node].
+using NodeJoints = std::array<std::vector<double>, kDof>;
 /// Where nodes lie, by blocks: RelaxTask::block_middle and block_radius, rad, by joint.
 struct RelaxBlocks {
-  std::array<std::vector<double>, kDof> middle, radius;
+  NodeJoints middle, radius;
 };
 /// Returns the blocks of nodes with these joints.
-inline RelaxBlocks relax_blocks(const Lattice& lattice,
-                                const std::array<std::vector<double>, kDof>& joints) {
+inline RelaxBlocks relax_blocks(const Lattice& lattice, const NodeJoints& joints) {
   constexpr std::size_t kBlock = RelaxTask<double>::kBlock;
   RelaxBlocks blocks;
   for (std::size_t k = 0; k < kDof; ++k) {
@@ -67,6 +68,36 @@ inline RelaxBlocks relax_blocks(const Lattice& lattice,
     }
   }
   return blocks;
+}
+
+/// Lowers `best`, one number for each node with joints `from`, to the least cost of a move that the
+/// task allows to a node with joints `to`, and its `value`. `blocks`: relax_blocks() of `to`, or
+/// null. `least_of_blocks` is scratch.
+inline void relax_all_pairs(RelaxTask<double> task, const NodeJoints& from, const NodeJoints& to,
+                            const RelaxBlocks* blocks, const std::vector<double>& value,
+                            std::vector<double>& least_of_blocks, std::vector<double>& best) {
+  if (value.empty() || from[0].empty()) return;
+  task.n = static_cast<int>(from[0].size());
+  task.offsets = static_cast<int>(value.size());
+  for (std::size_t k = 0; k < kDof; ++k) {
+    task.from[k] = from[k].data();
+    task.to[k] = to[k].data();
+    task.block_middle[k] = blocks ? blocks->middle[k].data() : nullptr;
+    task.block_radius[k] = blocks ? blocks->radius[k].data() : nullptr;
+  }
+  if (blocks) {
+    constexpr std::ptrdiff_t kBlock = RelaxTask<double>::kBlock;
+    least_of_blocks.clear();
+    for (auto first = value.begin(); first != value.end();) {
+      const auto last = first + std::min(kBlock, value.end() - first);
+      least_of_blocks.push_back(*std::min_element(first, last));
+      first = last;
+    }
+    task.block_value = least_of_blocks.data();
+  }
+  task.value = value.data();
+  task.best = best.data();
+  relax_kernels().relax_all(task);
 }
 
 }  // namespace swivel

@@ -40,30 +40,8 @@ void ExplicitCostToGo::share_nodes(LayerValues& coarser, std::span<const int> la
 
 void ExplicitCostToGo::relax_between(int step, const Joints& from, const Joints& to,
                                      const RelaxBlocks* blocks, const Values& others, Values& out) {
-  const std::size_t count = from[0].size(), partners = others.size();
-  if (partners == 0 || count == 0) return;
-  RelaxTask<double> task = relax_task(*lattice_, step);
-  task.n = static_cast<int>(count);
-  task.offsets = static_cast<int>(partners);
-  for (std::size_t k = 0; k < kDof; ++k) {
-    task.from[k] = from[k].data();
-    task.to[k] = to[k].data();
-    task.block_middle[k] = blocks ? blocks->middle[k].data() : nullptr;
-    task.block_radius[k] = blocks ? blocks->radius[k].data() : nullptr;
-  }
-  if (blocks) {
-    constexpr std::size_t kBlock = RelaxTask<double>::kBlock;
-    least_of_blocks_.clear();
-    for (std::size_t first = 0; first < partners; first += kBlock)
-      least_of_blocks_.push_back(*std::min_element(
-          others.begin() + static_cast<std::ptrdiff_t>(first),
-          others.begin() + static_cast<std::ptrdiff_t>(std::min(partners, first + kBlock))));
-    task.block_value = least_of_blocks_.data();
-  }
-  task.value = others.data();
-  task.best = out.data();
-  edges_ += static_cast<std::int64_t>(count * partners);
-  relax_kernels().relax_all(task);
+  edges_ += static_cast<std::int64_t>(from[0].size() * others.size());
+  relax_all_pairs(relax_task(*lattice_, step), from, to, blocks, others, least_of_blocks_, out);
 }
 
 void ExplicitCostToGo::relax(int step, int layer, int other_layer, const Values& others,

@@ -10,7 +10,6 @@
 #include "plan/layout/told_turns.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
-#include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "validity/collision_validity.hpp"
@@ -31,13 +30,6 @@ PathProblem bare_problem(const Problem& job, std::size_t stroke) {
   bare.arm().strokes[stroke].approach.setZero();
   bare.arm().strokes[stroke].retract.setZero();
   return problem_of_run(bare, {stroke, false});
-}
-
-/// Returns the layer of a path at an arc length, m.
-int layer_at(const ToolPath& path, double s) {
-  int layer = 0;
-  while (layer + 1 < path.size() && path.layer(layer).s < s - kSameLength) ++layer;
-  return layer;
 }
 
 /// A line with what its validity refers to.
@@ -144,13 +136,8 @@ CutLine LiftSearch::line(int layer, CutProgram::LineKind kind) {
   } else {
     path.begin_at(s, path_.layer(layer).tool, 0, problem.source);
   }
-  const Chain& chain = robot_->arm().chain;
-  const ArmClass& arm = robot_->arm_class();
-  line->lattice = with_all_windings(
-      planes.empty() ? make_lattice(chain, arm, path, problem, budget_)
-                     : std::make_unique<SrsLattice>(
-                           chain, *arm.srs, path, problem, budget_, std::move(planes), std::nullopt,
-                           SrsLattice::possible_circles(chain, *arm.srs, path, problem)));
+  line->lattice =
+      with_all_windings(make_piece_lattice(*robot_, path, problem, std::move(planes), budget_));
   line->collision.emplace(*line->lattice, world_, world_.edge_rule(robot_->radii()),
                           problem.limits.edges, proofs_, executor_, 0, budget_);
   line->validity.emplace(*line->lattice, *line->collision, hooks_, budget_);
@@ -158,7 +145,7 @@ CutLine LiftSearch::line(int layer, CutProgram::LineKind kind) {
   constexpr double kSameOnGrids = 1e-6, kNearInLists = 0.2;  // rad
   return {line->lattice,
           {line, &*line->validity},
-          arm.kind == ArmKind::kSrs ? kSameOnGrids : kNearInLists};
+          robot_->arm_class().kind == ArmKind::kSrs ? kSameOnGrids : kNearInLists};
 }
 
 std::optional<LiftSearch::Places> LiftSearch::next(int count) {

@@ -3,12 +3,21 @@
 
 #include <cstddef>
 #include <optional>
+#include <utility>
 
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
+#include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 
 namespace swivel {
+
+int layer_at(const ToolPath& path, double s) {
+  constexpr double kSameLength = 1e-9;  // m
+  int layer = 0;
+  while (layer + 1 < path.size() && path.layer(layer).s < s - kSameLength) ++layer;
+  return layer;
+}
 
 std::vector<ArmPlane> planes_of_piece(const Stroke& stroke, const PathProblem& problem,
                                       const PreparedRobot& robot, const ToolPath& path,
@@ -27,8 +36,7 @@ std::vector<ArmPlane> planes_of_piece(const Stroke& stroke, const PathProblem& p
   const std::vector<ArmPlane> known =
       carried_planes(*arm, problem_path(before, robot.arm().chain, budget), budget);
   const ArmPlane& begin = stroke.piece->before.empty() ? known.front() : known.back();
-  int first = 0;
-  while (first + 1 < path.size() && path.layer(first).s < stroke.approach.norm() - 1e-9) ++first;
+  const int first = layer_at(path, stroke.approach.norm());
   std::vector<ArmPlane> planes(static_cast<std::size_t>(path.size()));
   const auto carry = [&](const ArmPlane& from, int layer) {
     ArmPlane& to = planes[static_cast<std::size_t>(layer)];
@@ -41,6 +49,17 @@ std::vector<ArmPlane> planes_of_piece(const Stroke& stroke, const PathProblem& p
   last = middle;
   for (int layer = first - 1; layer >= 0; --layer) last = carry(last, layer);
   return planes;
+}
+
+std::unique_ptr<Lattice> make_piece_lattice(const PreparedRobot& robot, const ToolPath& path,
+                                            const PathProblem& problem,
+                                            std::vector<ArmPlane> planes, const Budget& budget) {
+  const Chain& chain = robot.arm().chain;
+  const ArmClass& arm = robot.arm_class();
+  if (planes.empty()) return make_lattice(chain, arm, path, problem, budget);
+  return std::make_unique<SrsLattice>(chain, *arm.srs, path, problem, budget, std::move(planes),
+                                      std::nullopt,
+                                      SrsLattice::possible_circles(chain, *arm.srs, path, problem));
 }
 
 }  // namespace swivel

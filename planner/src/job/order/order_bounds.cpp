@@ -97,9 +97,7 @@ std::vector<OrderBounds::Group> OrderBounds::divided(const std::vector<Group>& g
 double OrderBounds::distance(const Group& from, const Group& to) const {
   double least = kUnreachable;
   for (const Node& a : from.nodes) {
-    Config gap = metric_->least_delta(a.q, to.lower, to.upper);
-    if (metric_->chain().roll) gap[kDof - 1] = 0;
-    if (metric_->edge_cost(gap) >= least) continue;
+    if (least_transition_distance(*metric_, a.q, to.lower, to.upper) >= least) continue;
     for (const Node& b : to.nodes) least = std::min(least, transition_distance(*metric_, a.q, b.q));
   }
   return least;

@@ -51,6 +51,13 @@ double transition_distance(const Lattice& metric, const Config& from, const Conf
   return metric.edge_cost(delta);
 }
 
+double least_transition_distance(const Lattice& metric, const Config& from, const Config& lower,
+                                 const Config& upper) {
+  Config delta = metric.least_delta(from, lower, upper);
+  if (metric.chain().roll) delta[kDof - 1] = 0;
+  return metric.edge_cost(delta);
+}
+
 JobTransitions::JobTransitions(const PreparedRobot& robot, const World& world, const Limits& limits,
                                const Lattice& metric, DistanceProofs proofs, Executor& executor,
                                std::shared_ptr<StateCheck> check, const Budget& budget)
@@ -134,13 +141,6 @@ std::optional<JobTransitions::Chain> JobTransitions::search(World::Query& query,
   for (std::size_t k = 1; k < chain.corners.size(); ++k)
     chain.cost += distance(chain.corners[k - 1], chain.corners[k]);
   return chain;
-}
-
-double JobTransitions::least_distance(const Config& from, const Config& lower,
-                                      const Config& upper) const {
-  Config delta = metric_->least_delta(from, lower, upper);
-  if (metric_->chain().roll) delta[kDof - 1] = 0;
-  return metric_->edge_cost(delta);
 }
 
 template <class Body>

@@ -22,6 +22,11 @@ namespace swivel {
 [[nodiscard]] double transition_distance(const Lattice& metric, const Config& from,
                                          const Config& to);
 
+/// Returns a lower bound of transition_distance(metric, from, to) for all `to` with
+/// lower <= to <= upper.
+[[nodiscard]] double least_transition_distance(const Lattice& metric, const Config& from,
+                                               const Config& lower, const Config& upper);
+
 /// Finds transitions in a world: the straight move in joint space, else the cheapest of the ways
 /// around obstacles that were found for this transition before, with other ends; else, where a
 /// thorough search is asked for, one by rrt_connect(). Joints that the lattice treats as circles
@@ -38,7 +43,9 @@ class JobTransitions final : public Transitions {
     return transition_distance(*metric_, from, to);
   }
   [[nodiscard]] double least_distance(const Config& from, const Config& lower,
-                                      const Config& upper) const override;
+                                      const Config& upper) const override {
+    return least_transition_distance(*metric_, from, lower, upper);
+  }
   void find_barred(std::span<const Config> configurations, std::span<std::uint8_t> barred) override;
   void find(std::span<const TransitionQuestion> questions,
             std::span<TransitionAnswer> answers) override;

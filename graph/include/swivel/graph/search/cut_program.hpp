@@ -4,7 +4,6 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "swivel/core/base/budget.hpp"
@@ -25,8 +24,8 @@ struct CutPlace {
 struct CutLine {
   std::shared_ptr<const Lattice> lattice;
   std::shared_ptr<Validity> validity;  ///< of its nodes and edges
-  /// Nodes of the path and of the line that are no further from each other in any joint count as
-  /// the same, the nearest one of several, rad.
+  /// A node of the path's layer and the nearest node of the line are taken for one node if no joint
+  /// differs by more than this, rad.
   double same = 1e-6;
 };
 
